@@ -1,0 +1,15 @@
+//! Orientation from color: surface normals from one RGB picture of a uniformly coloured matte surface under several
+//! unknown coloured lights.
+//!
+//! `no_std`, no allocation, no unsafe code, no panic: every function works over borrowed buffers.
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod ellipsoid;
+pub mod image;
+pub mod mat3;
+pub mod rng;
+pub mod select;

@@ -1,0 +1,1 @@
+//! Oracles, scenes and loaders that the tests share.
