@@ -8,6 +8,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod depth;
 pub mod ellipsoid;
 pub mod image;
 pub mod mat3;

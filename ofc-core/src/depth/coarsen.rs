@@ -1,0 +1,355 @@
+//! The coarse grids: which pixels a block stands for, and what its edges weigh.
+//!
+//! A block of 2x2 pixels that a cut runs through holds pixels that have nothing to do with each other. It stands for
+//! the largest connected part of them; the others join the block that they are connected to, so that a cut one pixel
+//! wide is still a cut on every coarser grid.
+//!
+//! An edge between two blocks conducts what the edges between their pixels do: each is a path from the middle of one
+//! block to the middle of the other, half an inner edge, the edge across and half an inner edge in series, and the
+//! paths are parallel. Where all weights are one that gives one again; along a path one pixel wide it gives a half (two
+//! edges in series), and behind a neck it falls with the number of grids, as the resistance of a neck does.
+
+use super::grid::{CoarseArrays, Grid, Hierarchy, set_span};
+use super::operator::{
+    Attachment, Coarse, Fine, Operator, Packing, at, attach_coarse, attach_fine,
+};
+
+/// A grid whose attachments can be set.
+trait Attachable {
+    type View<'a>: Operator
+    where
+        Self: 'a;
+    fn view(&self) -> Self::View<'_>;
+    fn attach(&mut self, index: usize, attachment: Attachment);
+}
+
+struct FineGrid<'a, P> {
+    grid: Grid,
+    packed: &'a mut [f32],
+    packing: P,
+}
+
+impl<P: Packing> Attachable for FineGrid<'_, P> {
+    type View<'r>
+        = Fine<'r, P>
+    where
+        Self: 'r;
+
+    fn view(&self) -> Fine<'_, P> {
+        Fine { grid: self.grid, packed: self.packed, packing: self.packing }
+    }
+
+    fn attach(&mut self, index: usize, attachment: Attachment) {
+        attach_fine(self.packed, index, attachment);
+    }
+}
+
+struct CoarseGrid<'a, 'b> {
+    grid: Grid,
+    arrays: &'a mut CoarseArrays<'b>,
+}
+
+impl Attachable for CoarseGrid<'_, '_> {
+    type View<'r>
+        = Coarse<'r>
+    where
+        Self: 'r;
+
+    fn view(&self) -> Coarse<'_> {
+        view(self.grid, self.arrays)
+    }
+
+    fn attach(&mut self, index: usize, attachment: Attachment) {
+        attach_coarse(self.arrays.east, self.arrays.south, index, attachment);
+    }
+}
+
+/// The operator of a coarse grid.
+fn view<'a>(grid: Grid, arrays: &'a CoarseArrays) -> Coarse<'a> {
+    Coarse { grid, east: arrays.east, south: arrays.south, mass: arrays.mass }
+}
+
+/// The operator, right side and correction of a coarse grid.
+pub(super) fn equations<'a>(
+    grid: Grid,
+    arrays: CoarseArrays<'a>,
+) -> (Coarse<'a>, &'a [f32], &'a mut [f32]) {
+    let CoarseArrays { east, south, mass, right, correction } = arrays;
+    (Coarse { grid, east, south, mass }, right, correction)
+}
+
+/// Builds all coarse grids from the finest, and finds the spans of every grid.
+pub(super) fn build<P: Packing>(
+    grid: Grid,
+    packed: &mut [f32],
+    packing: P,
+    hierarchy: &mut Hierarchy,
+) -> Option<()> {
+    attach_strays(&mut FineGrid { grid, packed, packing });
+    let finest = Fine { grid, packed, packing };
+    find_spans(grid, hierarchy.spans_mut(0), |index| finest.is_unit(index));
+    let levels = hierarchy.levels();
+    if levels > 1 {
+        let (_, mut next, _) = hierarchy.level(1)?;
+        coarsen(&finest, &mut next);
+    }
+    for level in 1..levels {
+        let (grid, mut arrays, spans) = hierarchy.level(level)?;
+        if level + 1 < levels {
+            attach_strays(&mut CoarseGrid { grid, arrays: &mut arrays });
+        }
+        let coarse = view(grid, &arrays);
+        find_spans(grid, spans, |index| coarse.is_unit(index));
+        if level + 1 < levels {
+            let (own, mut next, _) = hierarchy.pair(level)?;
+            coarsen(&view(grid, &own), &mut next);
+        }
+    }
+    Some(())
+}
+
+/// The longest span of every row.
+fn find_spans(grid: Grid, spans: &mut [f32], is_unit: impl Fn(usize) -> bool) {
+    for y in 0..grid.height {
+        let start = grid.start(y);
+        let (mut best, mut from) = ((0, 0), 0);
+        for x in 0..=grid.width {
+            // The padding behind the row ends the last run.
+            if x == grid.width || !is_unit(start + x) {
+                if x - from > best.1 - best.0 {
+                    best = (from, x);
+                }
+                from = x + 1;
+            }
+        }
+        set_span(spans, y, best);
+    }
+}
+
+/// Finds the pixels that are cut off from their block and attaches them to another.
+fn attach_strays<A: Attachable>(target: &mut A) {
+    let grid = target.view().grid();
+    let mut strays = 0_usize;
+    for y in (0..grid.height).step_by(2) {
+        for x in (0..grid.width).step_by(2) {
+            let block = block_indices(&grid, x, y);
+            let stray = stray_pixels(&target.view(), block);
+            if stray != 0 {
+                for (bit, &index) in block.iter().enumerate() {
+                    if stray >> bit & 1 != 0 {
+                        target.attach(index, Attachment::None);
+                        strays += 1;
+                    }
+                }
+            }
+        }
+    }
+    if strays == 0 {
+        return;
+    }
+    for y in 0..grid.height {
+        for x in 0..grid.width {
+            let index = grid.start(y) + x;
+            let attachment = better_block(&target.view(), index, x, y);
+            if let Some(attachment) = attachment {
+                target.attach(index, attachment);
+            }
+        }
+    }
+}
+
+/// Where a pixel that is cut off from its block belongs instead, if anywhere; none for other pixels.
+fn better_block<O: Operator>(operator: &O, index: usize, x: usize, y: usize) -> Option<Attachment> {
+    if operator.attachment(index) != Attachment::None {
+        return None;
+    }
+    let stride = operator.grid().stride();
+    let (beside, edge_x) = if x.is_multiple_of(2) {
+        (index - 1, operator.east(index - 1))
+    } else {
+        (index + 1, operator.east(index))
+    };
+    let (across, edge_y) = if y.is_multiple_of(2) {
+        (index - stride, operator.south(index - stride))
+    } else {
+        (index + stride, operator.south(index))
+    };
+    let conducts =
+        |edge: f32, other| if operator.attachment(other) == Attachment::Own { edge } else { 0.0 };
+    let (edge_x, edge_y) = (conducts(edge_x, beside), conducts(edge_y, across));
+    if edge_x > 0.0 && edge_x >= edge_y {
+        Some(Attachment::Beside)
+    } else if edge_y > 0.0 {
+        Some(Attachment::Across)
+    } else {
+        None
+    }
+}
+
+/// The pixels of a block in reading order; beyond the grid there is padding, without edges.
+const fn block_indices(grid: &Grid, x: usize, y: usize) -> [usize; 4] {
+    let start = grid.start(y) + x;
+    let below = start + grid.stride();
+    [start, start + 1, below, below + 1]
+}
+
+/// A bit for each pixel of a block that has equations but is not connected, within the block, to its largest part.
+fn stray_pixels<O: Operator>(operator: &O, block: [usize; 4]) -> u32 {
+    let [a, b, c, d] = block;
+    let (top, bottom) = (operator.east(a) > 0.0, operator.east(c) > 0.0);
+    let (left, right) = (operator.south(a) > 0.0, operator.south(b) > 0.0);
+    // Three edges out of four connect all.
+    if u8::from(top) + u8::from(bottom) + u8::from(left) + u8::from(right) >= 3 {
+        return 0;
+    }
+    let stride = operator.grid().stride();
+    let strength = |index: usize| {
+        (operator.east(index) + operator.east(index - 1))
+            + (operator.south(index) + operator.south(index - stride))
+            + operator.mass(index)
+    };
+    let strengths = [strength(a), strength(b), strength(c), strength(d)];
+    let mut active = 0_u32;
+    for (bit, &strength) in strengths.iter().enumerate() {
+        active |= u32::from(strength > 0.0) << bit;
+    }
+    let links = [(top, 0b0011_u32), (bottom, 0b1100), (left, 0b0101), (right, 0b1010)];
+    let (mut best, mut best_size, mut best_strength) = (0, 0, 0.0);
+    for bit in 0..4 {
+        let mut part = 1_u32 << bit & active;
+        // Two links at most: two rounds reach all.
+        for _ in 0..2 {
+            for (exists, pair) in links {
+                if exists && part & pair != 0 {
+                    part |= pair;
+                }
+            }
+        }
+        let size = part.count_ones();
+        let total: f32 =
+            strengths.iter().enumerate().map(|(k, &s)| if part >> k & 1 != 0 { s } else { 0.0 }).sum();
+        if size > best_size || size == best_size && total > best_strength {
+            (best, best_size, best_strength) = (part, size, total);
+        }
+    }
+    active & !best
+}
+
+/// What a path of half an inner edge, an edge across and half an inner edge conducts. An inner edge of weight zero
+/// means that the block is only one pixel wide there.
+fn path(inner: f32, across: f32, other_inner: f32) -> f32 {
+    if inner == 1.0 && across == 1.0 && other_inner == 1.0 {
+        return 0.5;
+    }
+    let half = |weight: f32| if weight > 0.0 { 0.5 / weight } else { 0.0 };
+    1.0 / (1.0 / across + half(inner) + half(other_inner))
+}
+
+/// The weights and masses of the next coarser grid.
+fn coarsen<O: Operator>(operator: &O, coarse: &mut CoarseArrays) {
+    let grid = operator.grid();
+    let coarse_grid = grid.coarser();
+    let stride = grid.stride();
+    let own = |index: usize| operator.attachment(index) == Attachment::Own;
+    for y in 0..coarse_grid.height {
+        let row = coarse_grid.start(y);
+        for x in 0..coarse_grid.width {
+            let [a, b, c, d] = block_indices(&grid, 2 * x, 2 * y);
+            let horizontal = |left: usize, right: usize| {
+                let across = operator.east(right);
+                if across > 0.0 && own(right) && own(right + 1) {
+                    path(operator.east(left), across, operator.east(right + 1))
+                } else {
+                    0.0
+                }
+            };
+            let vertical = |upper: usize, lower: usize| {
+                let across = operator.south(lower);
+                if across > 0.0 && own(lower) && own(lower + stride) {
+                    path(operator.south(upper), across, operator.south(lower + stride))
+                } else {
+                    0.0
+                }
+            };
+            // A block at the right or lower end may lack its second column or row: what stands there is padding.
+            let (wide, high) = (2 * x + 1 < grid.width, 2 * y + 1 < grid.height);
+            let mut east = 0.0;
+            let mut south = 0.0;
+            if wide {
+                east += horizontal(a, b);
+                if high {
+                    east += horizontal(c, d);
+                }
+            }
+            if high {
+                south += vertical(a, c);
+                if wide {
+                    south += vertical(b, d);
+                }
+            }
+            let index = row + x;
+            for (array, value) in [(&mut coarse.east, east), (&mut coarse.south, south)] {
+                if let Some(slot) = array.get_mut(index) {
+                    *slot = value;
+                }
+            }
+            if let Some(slot) = coarse.mass.get_mut(index) {
+                *slot = 0.0;
+            }
+        }
+    }
+    add_masses(operator, coarse);
+}
+
+/// Every pixel's mass goes to the block it is attached to.
+fn add_masses<O: Operator>(operator: &O, coarse: &mut CoarseArrays) {
+    let grid = operator.grid();
+    let coarse_grid = grid.coarser();
+    for y in 0..grid.height {
+        let start = grid.start(y);
+        for x in 0..grid.width {
+            let mass = operator.mass(start + x);
+            if mass == 0.0 {
+                continue;
+            }
+            let away = |position: usize| {
+                if position.is_multiple_of(2) { (position / 2).wrapping_sub(1) } else { position / 2 + 1 }
+            };
+            let (block_x, block_y) = match operator.attachment(start + x) {
+                Attachment::Own => (x / 2, y / 2),
+                Attachment::None => continue,
+                Attachment::Beside => (away(x), y / 2),
+                Attachment::Across => (x / 2, away(y)),
+            };
+            if block_x < coarse_grid.width
+                && block_y < coarse_grid.height
+                && let Some(slot) = coarse.mass.get_mut(coarse_grid.start(block_y) + block_x)
+            {
+                *slot += mass;
+            }
+        }
+    }
+}
+
+impl<P: Packing> Fine<'_, P> {
+    /// Whether the pixel and its neighbours have weight one and no mass, and all stand for their own blocks.
+    fn is_unit(&self, index: usize) -> bool {
+        let stride = self.grid.stride();
+        [index, index - 1, index + 1, index - stride, index + stride]
+            .iter()
+            .all(|&index| at(self.packed, index) == 1.0)
+    }
+}
+
+impl Coarse<'_> {
+    /// Whether all edges of the pixel weigh one, there is no mass, and the neighbours stand for their own blocks.
+    fn is_unit(&self, index: usize) -> bool {
+        let stride = self.grid.stride();
+        let edges = [self.east(index), self.east(index - 1), self.south(index), self.south(index - stride)];
+        edges.iter().all(|&weight| weight == 1.0)
+            && self.mass(index) == 0.0
+            && [index, index - 1, index + 1, index - stride, index + stride]
+                .iter()
+                .all(|&index| self.attachment(index) == Attachment::Own)
+    }
+}

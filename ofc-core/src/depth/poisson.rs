@@ -1,0 +1,201 @@
+//! Least squares over the usable pixels, and the last step of the other methods: slopes in, depth out.
+
+use super::grid::Parts;
+use super::input::SlopeRow;
+use super::operator::{Fine, Packing, Signed};
+use super::regions::Regions;
+use super::solver::{Outcome, Output, Stop, Work, solve};
+use super::sweep::Buffers;
+use super::trend::Trend;
+use super::{DepthError, DepthInput, DepthParams, DepthResult, coarsen, right_side};
+use libm::sqrt;
+
+/// Everything a method works with.
+pub(super) struct Job<'a> {
+    pub input: &'a DepthInput<'a>,
+    pub params: &'a DepthParams,
+    pub parts: Parts<'a>,
+    pub output: Output<'a>,
+}
+
+/// The inner `None` of a method: an array is not as long as it should be, which does not happen.
+pub(super) type Answer = Option<Result<DepthResult, DepthError>>;
+
+/// Depths of the prior beyond this many pixels are taken for unknown.
+const MAX_PRIOR: f64 = 1e9;
+
+/// The two lowest bits are the attachment's.
+pub(super) fn pack(value: f32) -> f32 {
+    f32::from_bits(value.to_bits() & !3)
+}
+
+pub(super) fn integrate(mut job: Job) -> Answer {
+    let [masked, usable] = job.read();
+    if usable == 0 {
+        return Some(Err(DepthError::Empty));
+    }
+    job.depth(DepthResult { pixels: usable, excluded: masked - usable, ..DepthResult::default() }, true)
+}
+
+impl Job<'_> {
+    /// Reads p into the correction, q into the direction and root weights. Returns the pixels of the mask and the
+    /// usable ones.
+    pub fn read(&mut self) -> [usize; 2] {
+        let Parts { grid, fine, .. } = &mut self.parts;
+        let min_n3 = self.params.min_n3 as f32;
+        let mut counts = [0, 0];
+        for y in 0..grid.height {
+            let mut row = SlopeRow {
+                p: grid.row_mut(fine.correction, y),
+                q: grid.row_mut(fine.direction, y),
+                root: grid.row_mut(fine.weights, y),
+            };
+            let row_counts = self.input.read(y, min_n3, &mut row);
+            for root in row.root {
+                *root = pack(*root);
+            }
+            for (sum, count) in counts.iter_mut().zip(row_counts) {
+                *sum += count;
+            }
+        }
+        counts
+    }
+
+    /// Integrates the slopes in the correction (p) and the direction (q). `so_far` is the result to complete,
+    /// `converged` says whether all went well until now.
+    pub fn depth(mut self, so_far: DepthResult, converged: bool) -> Answer {
+        let params = self.params;
+        let packing = Signed { mass: params.prior_weight as f32 };
+        let anchored = params.prior_weight > 0.0 && self.input.prior.is_some();
+        if anchored {
+            self.mark_prior();
+        }
+        let Parts { grid, fine, hierarchy, buffers } = &mut self.parts;
+        coarsen::build(*grid, fine.weights, packing, hierarchy)?;
+        let trend = Trend::fit(grid, fine.weights, fine.correction, fine.direction);
+        let mut buffers = Buffers::new(buffers);
+        let operator = Fine { grid: *grid, packed: fine.weights, packing };
+        let [whole, ..] = buffers.cut(grid.width);
+        let mut squared = right_side::fill(
+            &operator,
+            hierarchy.spans,
+            &trend,
+            fine.correction,
+            fine.direction,
+            fine.residual,
+            whole,
+        );
+        if anchored {
+            let prior = Prior { input: self.input, params, trend: &trend };
+            squared += prior.add(&operator, fine.residual);
+        }
+        let norm = sqrt(squared);
+        for y in 0..grid.height {
+            self.output.row_mut(y).fill(0.0);
+        }
+        let work = Work {
+            residual: fine.residual,
+            correction: fine.correction,
+            direction: Some(fine.direction),
+        };
+        let stop = Stop { residual: params.tolerance * norm, cycles: params.max_cycles };
+        let Outcome { cycles, residual } =
+            solve(&operator, hierarchy, work, &mut self.output, &mut buffers, stop)?;
+        let regions = self.finish(&trend);
+        Some(Ok(DepthResult {
+            converged: converged && residual <= stop.residual,
+            cycles: so_far.cycles + cycles,
+            residual: if norm > 0.0 { residual / norm } else { 0.0 },
+            regions,
+            ..so_far
+        }))
+    }
+
+    /// The sign of a root weight says that the prior knows the pixel's depth.
+    fn mark_prior(&mut self) {
+        let Parts { grid, fine, .. } = &mut self.parts;
+        let Some(prior) = self.input.prior else { return };
+        for y in 0..grid.height {
+            for (root, &prior) in grid.row_mut(fine.weights, y).iter_mut().zip(prior.row(y)) {
+                if *root > 0.0 && (f64::from(prior) / self.params.pixel_pitch).abs() <= MAX_PRIOR {
+                    *root = -*root;
+                }
+            }
+        }
+    }
+
+    /// Puts the trend back, frees every region of its mean, scales, and marks what has no depth. Returns the number of
+    /// regions.
+    fn finish(&mut self, trend: &Trend) -> usize {
+        let Parts { grid, fine, .. } = &mut self.parts;
+        let (input, output) = (self.input, &mut self.output);
+        let weights: &[f32] = fine.weights;
+        fine.correction.fill(0.0);
+        fine.direction.fill(0.0);
+        fine.residual.fill(0.0);
+        let mut regions = Regions {
+            grid: *grid,
+            parents: fine.correction,
+            sums: fine.direction,
+            rests: fine.residual,
+        };
+        let anchors = |weight: f32| weight < 0.0;
+        for y in 0..grid.height {
+            let [constant, linear, square] = trend.depth(y);
+            let row = output.row_mut(y);
+            for (x, z) in row.iter_mut().enumerate() {
+                let x = x as f64;
+                *z = (f64::from(*z) + (constant + x * (linear + x * square))) as f32;
+            }
+            regions.add_row(y, weights, row, input.masked(y), anchors);
+        }
+        let pitch = self.params.pixel_pitch;
+        for y in 0..grid.height {
+            let start = grid.start(y);
+            let (mut before, mut offset) = (0.0, 0.0);
+            let pixels = output.row_mut(y).iter_mut().zip(grid.row(weights, y)).zip(input.masked(y));
+            for (x, ((z, &weight), masked)) in pixels.enumerate() {
+                if weight != 0.0 && before == 0.0 {
+                    offset = regions.offset(start + x);
+                }
+                before = weight;
+                let value = ((f64::from(*z) - offset) * pitch) as f32;
+                *z = if masked && weight != 0.0 { value } else { NO_DEPTH };
+            }
+        }
+        regions.count()
+    }
+}
+
+/// The one NaN that is ever written.
+const NO_DEPTH: f32 = f32::from_bits(0x7fc0_0000);
+
+/// Known depths on their way into the equations.
+struct Prior<'a> {
+    input: &'a DepthInput<'a>,
+    params: &'a DepthParams,
+    trend: &'a Trend,
+}
+
+impl Prior<'_> {
+    /// Adds the known depths, less the trend, to the right side; returns their squared norm.
+    fn add(&self, operator: &Fine<Signed>, right: &mut [f32]) -> f64 {
+        let Some(prior) = self.input.prior else { return 0.0 };
+        let grid = operator.grid;
+        let mut squared = 0.0;
+        for y in 0..grid.height {
+            let [constant, linear, square] = self.trend.depth(y);
+            let packed = grid.row(operator.packed, y);
+            let row = grid.row_mut(right, y).iter_mut().zip(packed).zip(prior.row(y)).enumerate();
+            for (x, ((right, &packed), &prior)) in row {
+                let mass = f64::from(operator.packing.mass(packed));
+                if mass > 0.0 {
+                    let (x, depth) = (x as f64, f64::from(prior) / self.params.pixel_pitch);
+                    *right += (mass * (depth - (constant + x * (linear + x * square)))) as f32;
+                    squared += (mass * depth) * (mass * depth);
+                }
+            }
+        }
+        squared
+    }
+}

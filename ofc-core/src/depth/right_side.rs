@@ -1,0 +1,113 @@
+//! The right side of the equations: what the slopes, less the trend, want of every pixel.
+//!
+//! Between two neighbouring pixels the depth should differ by the mean of their slopes. Least squares over these
+//! equations, an edge each, has the normal equations `sum of w_ij (z_i - z_j) = sum of w_ij g_ij`.
+
+use super::grid::span;
+use super::operator::{Coefficients, Operator, Unit, at};
+use super::sweep::dot;
+use super::trend::Trend;
+
+/// Rows of slopes: p with its neighbours left and right, q with those above and below, in grid layout.
+struct Segment<'a> {
+    p: [&'a [f32]; 3],
+    q: [&'a [f32]; 3],
+}
+
+/// The trend's part in a row.
+struct TrendRow {
+    /// p at the left end of the row and its slope, from the middle of the edge to the left of column 0.
+    p: [f32; 2],
+    /// q in the middles of the edges above and below column 0, and their slope.
+    q: [f32; 3],
+}
+
+/// Writes the right side into `right` and returns the squared norm of what it would be with the trend.
+pub(super) fn fill<O: Operator>(
+    operator: &O,
+    spans: &[f32],
+    trend: &Trend,
+    p: &mut [f32],
+    q: &mut [f32],
+    right: &mut [f32],
+    whole: &mut [f32],
+) -> f64 {
+    let grid = operator.grid();
+    for y in 0..grid.height {
+        let [[p0, pp], [q0, qp]] = trend.slopes(y as f64);
+        for (array, start, slope) in [(&mut *p, p0, pp), (&mut *q, q0, qp)] {
+            let (start, slope) = (start as f32, slope as f32);
+            for (x, value) in grid.row_mut(array, y).iter_mut().enumerate() {
+                *value -= start + slope * x as f32;
+            }
+        }
+    }
+    let mut squared = 0.0;
+    for y in 0..grid.height {
+        let (start, stride) = (grid.start(y), grid.stride());
+        let [[p0, pp], _] = trend.slopes(y as f64);
+        let [_, [above, qp]] = trend.slopes(y as f64 - 0.5);
+        let [_, [below, _]] = trend.slopes(y as f64 + 0.5);
+        let trend = TrendRow {
+            p: [(p0 - 0.5 * pp) as f32, pp as f32],
+            q: [above as f32, below as f32, qp as f32],
+        };
+        let (from, to) = span(spans, y);
+        let to = to.min(grid.width);
+        let from = from.min(to);
+        for (from, to, unit) in [(0, from, false), (from, to, true), (to, grid.width, false)] {
+            let (start, n) = (start + from, to - from);
+            let cut = |array, start| grid_cut(array, start, n);
+            let slopes = Segment {
+                p: [cut(p, start - 1), cut(p, start), cut(p, start + 1)],
+                q: [cut(q, start - stride), cut(q, start), cut(q, start + stride)],
+            };
+            let Some(out) = right.get_mut(start..start + n) else { continue };
+            let Some(whole) = whole.get_mut(from..from + n) else { continue };
+            if unit {
+                segment(&Unit, &trend, &slopes, from, out, whole);
+            } else if let Some(row) = operator.row(start, n) {
+                segment(&row, &trend, &slopes, from, out, whole);
+            }
+        }
+        let whole = whole.get(..grid.width).unwrap_or_default();
+        squared += dot(whole, whole);
+    }
+    squared
+}
+
+fn grid_cut(array: &[f32], start: usize, n: usize) -> &[f32] {
+    array.get(start..start + n).unwrap_or_default()
+}
+
+#[inline(always)]
+fn segment<C: Coefficients>(
+    coefficients: &C,
+    trend: &TrendRow,
+    slopes: &Segment,
+    from: usize,
+    out: &mut [f32],
+    whole: &mut [f32],
+) {
+    let n = out.len();
+    let cut = |row: &'_ [f32]| row.len() == n;
+    if !(slopes.p.iter().all(|row| cut(row)) && slopes.q.iter().all(|row| cut(row)) && whole.len() == n) {
+        return;
+    }
+    let ([p_left, p, p_right], [q_above, q, q_below]) = (slopes.p, slopes.q);
+    let [p_trend, pp] = trend.p;
+    let [above_trend, below_trend, qp] = trend.q;
+    for (i, (out, whole)) in out.iter_mut().zip(whole).enumerate() {
+        let [wl, wr, wu, wd] = coefficients.edges(i);
+        let left = 0.5 * (at(p_left, i) + at(p, i));
+        let right = 0.5 * (at(p, i) + at(p_right, i));
+        let above = 0.5 * (at(q_above, i) + at(q, i));
+        let below = 0.5 * (at(q, i) + at(q_below, i));
+        *out = (wl * left - wr * right) + (wd * below - wu * above);
+        let x = (from + i) as f32;
+        let (left_trend, across) = (p_trend + pp * x, qp * x);
+        *whole = *out
+            + ((wl * left_trend - wr * (left_trend + pp))
+                + (wd * (below_trend + across) - wu * (above_trend + across)));
+    }
+}
