@@ -9,7 +9,7 @@
 //! paths are parallel. Where all weights are one that gives one again; along a path one pixel wide it gives a half (two
 //! edges in series), and behind a neck it falls with the number of grids, as the resistance of a neck does.
 
-use super::grid::{CoarseArrays, Grid, Hierarchy, set_span};
+use super::grid::{CoarseArrays, Grid, Hierarchy, Span};
 use super::operator::{
     Attachment, Coarse, Fine, Operator, Packing, at, attach_coarse, attach_fine,
 };
@@ -79,59 +79,92 @@ pub(super) fn equations<'a>(
 }
 
 /// Builds all coarse grids from the finest, and finds the spans of every grid.
+#[inline(never)]
 pub(super) fn build<P: Packing>(
     grid: Grid,
     packed: &mut [f32],
     packing: P,
     hierarchy: &mut Hierarchy,
 ) -> Option<()> {
-    attach_strays(&mut FineGrid { grid, packed, packing });
+    find_fine_spans(Fine { grid, packed, packing }, hierarchy);
+    if attach_strays(&mut FineGrid { grid, packed, packing }, hierarchy.spans) {
+        find_fine_spans(Fine { grid, packed, packing }, hierarchy);
+    }
     let finest = Fine { grid, packed, packing };
-    find_spans(grid, hierarchy.spans_mut(0), |index| finest.is_unit(index));
     let levels = hierarchy.levels();
     if levels > 1 {
-        let (_, mut next, _) = hierarchy.level(1)?;
-        coarsen(&finest, &mut next);
+        let (mut next, spans) = hierarchy.first()?;
+        coarsen(&finest, spans, &mut next);
     }
     for level in 1..levels {
         let (grid, mut arrays, spans) = hierarchy.level(level)?;
+        find_coarse_spans(view(grid, &arrays), spans);
         if level + 1 < levels {
-            attach_strays(&mut CoarseGrid { grid, arrays: &mut arrays });
-        }
-        let coarse = view(grid, &arrays);
-        find_spans(grid, spans, |index| coarse.is_unit(index));
-        if level + 1 < levels {
-            let (own, mut next, _) = hierarchy.pair(level)?;
-            coarsen(&view(grid, &own), &mut next);
+            if attach_strays(&mut CoarseGrid { grid, arrays: &mut arrays }, spans) {
+                find_coarse_spans(view(grid, &arrays), spans);
+            }
+            let (own, mut next, spans) = hierarchy.pair(level)?;
+            coarsen(&view(grid, &own), spans, &mut next);
         }
     }
     Some(())
 }
 
-/// The longest span of every row.
-fn find_spans(grid: Grid, spans: &mut [f32], is_unit: impl Fn(usize) -> bool) {
+#[inline(never)]
+fn find_fine_spans<P: Packing>(finest: Fine<P>, hierarchy: &mut Hierarchy) {
+    let is_active = |index| at(finest.packed, index) != 0.0;
+    find_spans(finest.grid, hierarchy.spans_mut(0), is_active, |index| finest.is_unit(index));
+}
+
+fn find_coarse_spans(coarse: Coarse, spans: &mut [f32]) {
+    let is_active = |index| strength(&coarse, index) > 0.0;
+    find_spans(coarse.grid, spans, is_active, |index| coarse.is_unit(index));
+}
+
+/// The diagonal of a pixel's equation; zero if it has none.
+fn strength<O: Operator>(operator: &O, index: usize) -> f32 {
+    let stride = operator.grid().stride();
+    (operator.east(index) + operator.east(index - 1))
+        + (operator.south(index) + operator.south(index - stride))
+        + operator.mass(index)
+}
+
+/// The span of every row.
+fn find_spans(
+    grid: Grid,
+    spans: &mut [f32],
+    is_active: impl Fn(usize) -> bool,
+    is_unit: impl Fn(usize) -> bool,
+) {
     for y in 0..grid.height {
         let start = grid.start(y);
-        let (mut best, mut from) = ((0, 0), 0);
-        for x in 0..=grid.width {
-            // The padding behind the row ends the last run.
-            if x == grid.width || !is_unit(start + x) {
-                if x - from > best.1 - best.0 {
-                    best = (from, x);
+        let first = (0..grid.width).find(|&x| is_active(start + x)).unwrap_or(grid.width);
+        let last = (first..grid.width).rfind(|&x| is_active(start + x)).map_or(first, |x| x + 1);
+        let (mut best, mut from) = ([first, first], first);
+        for x in first..=last {
+            if x == last || !is_unit(start + x) {
+                let [a, b] = best;
+                if x - from > b - a {
+                    best = [from, x];
                 }
                 from = x + 1;
             }
         }
-        set_span(spans, y, best);
+        Span { active: [first, last], unit: best }.store(spans, y);
     }
 }
 
-/// Finds the pixels that are cut off from their block and attaches them to another.
-fn attach_strays<A: Attachable>(target: &mut A) {
+/// Finds the pixels that are cut off from their block and attaches them to another. Returns whether there are any.
+#[inline(never)]
+fn attach_strays<A: Attachable>(target: &mut A, spans: &[f32]) -> bool {
     let grid = target.view().grid();
     let mut strays = 0_usize;
     for y in (0..grid.height).step_by(2) {
+        let [from, to] = Span::load(spans, y, grid.width).unit;
         for x in (0..grid.width).step_by(2) {
+            if x >= from && x < to {
+                continue;
+            }
             let block = block_indices(&grid, x, y);
             let stray = stray_pixels(&target.view(), block);
             if stray != 0 {
@@ -145,7 +178,7 @@ fn attach_strays<A: Attachable>(target: &mut A) {
         }
     }
     if strays == 0 {
-        return;
+        return false;
     }
     for y in 0..grid.height {
         for x in 0..grid.width {
@@ -156,6 +189,7 @@ fn attach_strays<A: Attachable>(target: &mut A) {
             }
         }
     }
+    true
 }
 
 /// Where a pixel that is cut off from its block belongs instead, if anywhere; none for other pixels.
@@ -195,20 +229,14 @@ const fn block_indices(grid: &Grid, x: usize, y: usize) -> [usize; 4] {
 
 /// A bit for each pixel of a block that has equations but is not connected, within the block, to its largest part.
 fn stray_pixels<O: Operator>(operator: &O, block: [usize; 4]) -> u32 {
-    let [a, b, c, d] = block;
+    let [a, b, c, _] = block;
     let (top, bottom) = (operator.east(a) > 0.0, operator.east(c) > 0.0);
     let (left, right) = (operator.south(a) > 0.0, operator.south(b) > 0.0);
     // Three edges out of four connect all.
     if u8::from(top) + u8::from(bottom) + u8::from(left) + u8::from(right) >= 3 {
         return 0;
     }
-    let stride = operator.grid().stride();
-    let strength = |index: usize| {
-        (operator.east(index) + operator.east(index - 1))
-            + (operator.south(index) + operator.south(index - stride))
-            + operator.mass(index)
-    };
-    let strengths = [strength(a), strength(b), strength(c), strength(d)];
+    let strengths = block.map(|index| strength(operator, index));
     let mut active = 0_u32;
     for (bit, &strength) in strengths.iter().enumerate() {
         active |= u32::from(strength > 0.0) << bit;
@@ -246,14 +274,19 @@ fn path(inner: f32, across: f32, other_inner: f32) -> f32 {
 }
 
 /// The weights and masses of the next coarser grid.
-fn coarsen<O: Operator>(operator: &O, coarse: &mut CoarseArrays) {
+#[inline(never)]
+fn coarsen<O: Operator>(operator: &O, spans: &[f32], coarse: &mut CoarseArrays) {
     let grid = operator.grid();
     let coarse_grid = grid.coarser();
     let stride = grid.stride();
     let own = |index: usize| operator.attachment(index) == Attachment::Own;
     for y in 0..coarse_grid.height {
         let row = coarse_grid.start(y);
-        for x in 0..coarse_grid.width {
+        let (from, to) = unit_blocks(spans, grid, y);
+        for (array, value) in [(&mut coarse.east, 1.0), (&mut coarse.south, 1.0), (&mut coarse.mass, 0.0)] {
+            array.get_mut(row + from..row + to).unwrap_or_default().fill(value);
+        }
+        for x in (0..from).chain(to..coarse_grid.width) {
             let [a, b, c, d] = block_indices(&grid, 2 * x, 2 * y);
             let horizontal = |left: usize, right: usize| {
                 let across = operator.east(right);
@@ -298,16 +331,32 @@ fn coarsen<O: Operator>(operator: &O, coarse: &mut CoarseArrays) {
             }
         }
     }
-    add_masses(operator, coarse);
+    add_masses(operator, spans, coarse);
+}
+
+/// The blocks of row `y` of the coarse grid, whose edges join pixels with unit edges only.
+fn unit_blocks(spans: &[f32], grid: Grid, y: usize) -> (usize, usize) {
+    if 2 * y + 2 >= grid.height {
+        return (0, 0);
+    }
+    let (mut from, mut to) = (0, grid.width);
+    for y in 2 * y..2 * y + 3 {
+        let [row_from, row_to] = Span::load(spans, y, grid.width).unit;
+        (from, to) = (from.max(row_from), to.min(row_to));
+    }
+    let (from, to) = (from.div_ceil(2), to.saturating_sub(1) / 2);
+    if from < to { (from, to) } else { (0, 0) }
 }
 
 /// Every pixel's mass goes to the block it is attached to.
-fn add_masses<O: Operator>(operator: &O, coarse: &mut CoarseArrays) {
+#[inline(never)]
+fn add_masses<O: Operator>(operator: &O, spans: &[f32], coarse: &mut CoarseArrays) {
     let grid = operator.grid();
     let coarse_grid = grid.coarser();
     for y in 0..grid.height {
         let start = grid.start(y);
-        for x in 0..grid.width {
+        let Span { active: [first, last], unit: [from, to] } = Span::load(spans, y, grid.width);
+        for x in (first..from).chain(to..last) {
             let mass = operator.mass(start + x);
             if mass == 0.0 {
                 continue;
@@ -333,6 +382,7 @@ fn add_masses<O: Operator>(operator: &O, coarse: &mut CoarseArrays) {
 
 impl<P: Packing> Fine<'_, P> {
     /// Whether the pixel and its neighbours have weight one and no mass, and all stand for their own blocks.
+    #[inline(always)]
     fn is_unit(&self, index: usize) -> bool {
         let stride = self.grid.stride();
         [index, index - 1, index + 1, index - stride, index + stride]
@@ -343,6 +393,7 @@ impl<P: Packing> Fine<'_, P> {
 
 impl Coarse<'_> {
     /// Whether all edges of the pixel weigh one, there is no mass, and the neighbours stand for their own blocks.
+    #[inline(always)]
     fn is_unit(&self, index: usize) -> bool {
         let stride = self.grid.stride();
         let edges = [self.east(index), self.east(index - 1), self.south(index), self.south(index - stride)];

@@ -13,6 +13,9 @@ const COARSE_ARRAYS: u64 = 5;
 /// Arrays of the finest grid: weights, residual, correction and search direction.
 const FINE_ARRAYS: u64 = 4;
 
+/// Numbers that a row keeps about itself, see [`Span`].
+const SPAN_NUMBERS: u64 = 4;
+
 /// Rows of scratch.
 const ROW_BUFFERS: u64 = 4;
 
@@ -47,6 +50,17 @@ impl Grid {
     /// A single pixel has no equation left to solve by going coarser.
     pub const fn is_coarsest(&self) -> bool {
         self.width <= 1 && self.height <= 1
+    }
+
+    /// Zeroes all of `array` that is not a pixel.
+    fn clear_padding(&self, array: &mut [f32]) {
+        let stride = self.stride();
+        let (above, rest) = array.split_at_mut_checked(stride + 1).unwrap_or_default();
+        above.fill(0.0);
+        for row in rest.chunks_mut(stride).take(self.height) {
+            row.iter_mut().skip(self.width).for_each(|padding| *padding = 0.0);
+        }
+        rest.iter_mut().skip(self.height * stride).for_each(|padding| *padding = 0.0);
     }
 
     /// Row `y` of `array`, none when there is no such row.
@@ -84,7 +98,7 @@ pub(super) const fn workspace_len(width: usize, height: usize) -> Option<usize> 
     let (w, h, levels) = (width as u64, height as u64, MAX_LEVELS as u64);
     let fine = FINE_ARRAYS * ((h + 2) * (w + 1) + 1);
     let coarse = COARSE_ARRAYS * (w * h / 3 + 3 * w + 2 * h + 6 * levels);
-    let spans = 2 * (2 * h + levels);
+    let spans = SPAN_NUMBERS * (2 * h + levels);
     let len = fine + coarse + spans + ROW_BUFFERS * (w + 2);
     if len > isize::MAX as u64 / 4 { None } else { Some(len as usize) }
 }
@@ -130,7 +144,7 @@ pub(super) struct Hierarchy<'a> {
     pub finest: Grid,
     /// All coarse arrays, level after level.
     pub coarse: &'a mut [f32],
-    /// Two numbers a row, level after level, the finest first.
+    /// [`SPAN_NUMBERS`] a row, level after level, the finest first.
     pub spans: &'a mut [f32],
 }
 
@@ -140,18 +154,22 @@ fn take<'a>(rest: &mut &'a mut [f32], count: usize) -> Option<&'a mut [f32]> {
     Some(head)
 }
 
-/// Cuts and clears as much of `workspace` as is needed; `None` if it is too short.
+/// Cuts and prepares as much of `workspace` as is needed; `None` if it is too short.
 pub(super) fn split(grid: Grid, workspace: &mut [f32]) -> Option<Parts<'_>> {
     let mut rest = workspace.get_mut(..workspace_len(grid.width, grid.height)?)?;
-    rest.fill(0.0);
     let fine = FineArrays {
         weights: take(&mut rest, grid.len())?,
         residual: take(&mut rest, grid.len())?,
         correction: take(&mut rest, grid.len())?,
         direction: take(&mut rest, grid.len())?,
     };
+    for array in [&mut *fine.weights, fine.residual, fine.correction, fine.direction] {
+        grid.clear_padding(array);
+    }
     let buffers = take(&mut rest, ROW_BUFFERS as usize * (grid.width + 2))?;
-    let spans = take(&mut rest, 2 * (2 * grid.height + MAX_LEVELS))?;
+    let spans = take(&mut rest, SPAN_NUMBERS as usize * (2 * grid.height + MAX_LEVELS))?;
+    buffers.fill(0.0);
+    rest.fill(0.0);
     Some(Parts { grid, fine, hierarchy: Hierarchy { finest: grid, coarse: rest, spans }, buffers })
 }
 
@@ -174,7 +192,7 @@ impl Hierarchy<'_> {
             if k > 0 {
                 arrays += COARSE_ARRAYS as usize * grid.len();
             }
-            spans += 2 * grid.height;
+            spans += SPAN_NUMBERS as usize * grid.height;
             grid = grid.coarser();
         }
         (grid, arrays, spans)
@@ -188,14 +206,14 @@ impl Hierarchy<'_> {
     /// Spans of `level` for writing.
     pub fn spans_mut(&mut self, level: usize) -> &mut [f32] {
         let (grid, _, start) = self.locate(level);
-        self.spans.get_mut(start..start + 2 * grid.height).unwrap_or_default()
+        self.spans.get_mut(start..start + SPAN_NUMBERS as usize * grid.height).unwrap_or_default()
     }
 
     /// Grid, arrays and spans of a coarse `level`.
     pub fn level(&mut self, level: usize) -> Option<(Grid, CoarseArrays<'_>, &mut [f32])> {
         let (grid, start, spans) = self.locate(level);
         let arrays = cut(self.coarse.get_mut(start..)?, grid)?;
-        Some((grid, arrays, self.spans.get_mut(spans..spans + 2 * grid.height)?))
+        Some((grid, arrays, self.spans.get_mut(spans..spans + SPAN_NUMBERS as usize * grid.height)?))
     }
 
     /// The arrays of the first coarse grid and the spans of the finest grid.
@@ -209,7 +227,7 @@ impl Hierarchy<'_> {
         let (grid, start, spans) = self.locate(level);
         let (own, next) =
             self.coarse.get_mut(start..)?.split_at_mut_checked(COARSE_ARRAYS as usize * grid.len())?;
-        let spans = self.spans.get_mut(spans..spans + 2 * grid.height)?;
+        let spans = self.spans.get_mut(spans..spans + SPAN_NUMBERS as usize * grid.height)?;
         Some((cut(own, grid)?, cut(next, grid.coarser())?, spans))
     }
 }
@@ -225,17 +243,49 @@ fn cut(mut rest: &mut [f32], grid: Grid) -> Option<CoarseArrays<'_>> {
     })
 }
 
-/// Row `y` of `spans`: the pixels `from..to` whose four edges all have weight one and whose mass is zero.
-pub(super) fn span(spans: &[f32], y: usize) -> (usize, usize) {
-    let from = spans.get(2 * y).map_or(0, |v| v.to_bits() as usize);
-    let to = spans.get(2 * y + 1).map_or(0, |v| v.to_bits() as usize);
-    (from, to)
+/// What a row is made of: nothing, some pixels, many pixels in one piece that are all alike, some pixels, nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Span {
+    /// From the first to behind the last pixel that has an equation.
+    pub active: [usize; 2],
+    /// The pixels (within `active`) that have four edges of weight one and no mass, and whose neighbours stand for
+    /// their own blocks.
+    pub unit: [usize; 2],
 }
 
-/// Stores the span of row `y`.
-pub(super) fn set_span(spans: &mut [f32], y: usize, (from, to): (usize, usize)) {
-    // Indices fit: the sides of a grid are below 2^29.
-    for (slot, value) in spans.iter_mut().skip(2 * y).zip([from, to]) {
-        *slot = f32::from_bits(u32::try_from(value).unwrap_or(0));
+impl Span {
+    /// The span of row `y`.
+    pub fn load(spans: &[f32], y: usize, width: usize) -> Self {
+        let mut numbers = [0; SPAN_NUMBERS as usize];
+        for (number, stored) in numbers.iter_mut().zip(spans.iter().skip(SPAN_NUMBERS as usize * y)) {
+            *number = stored.to_bits() as usize;
+        }
+        // Indices fit and are in order; saying so again spares the checks later.
+        let [first, from, to, last] = numbers;
+        let last = last.min(width);
+        let to = to.min(last);
+        let from = from.min(to);
+        Self { active: [first.min(from), last], unit: [from, to] }
+    }
+
+    /// Stores the span of row `y`.
+    pub fn store(self, spans: &mut [f32], y: usize) {
+        let ([first, last], [from, to]) = (self.active, self.unit);
+        let stored = spans.iter_mut().skip(SPAN_NUMBERS as usize * y);
+        for (slot, value) in stored.zip([first, from, to, last]) {
+            *slot = f32::from_bits(u32::try_from(value).unwrap_or(0));
+        }
+    }
+
+    /// The part of a row that has equations.
+    pub fn cut<'a>(&self, row: &'a [f32]) -> &'a [f32] {
+        let [first, last] = self.active;
+        row.get(first..last).unwrap_or_default()
+    }
+
+    /// As [`cut`](Self::cut), for writing.
+    pub fn cut_mut<'a>(&self, row: &'a mut [f32]) -> &'a mut [f32] {
+        let [first, last] = self.active;
+        row.get_mut(first..last).unwrap_or_default()
     }
 }

@@ -141,7 +141,7 @@ pub enum DepthError {
 /// Numbers that [`integrate`] needs as workspace for a picture of this size; `None` if there is no such picture.
 ///
 /// With w and h for width and height that is `4 ((h + 2) (w + 1) + 1) + 5 (floor(w h / 3) + 3 w + 2 h + 180) +
-/// 2 (2 h + 30) + 4 (w + 2)`.
+/// 4 (2 h + 30) + 4 (w + 2)`.
 #[must_use]
 pub const fn workspace_len(width: usize, height: usize) -> Option<usize> {
     grid::workspace_len(width, height)

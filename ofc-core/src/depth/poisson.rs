@@ -3,11 +3,11 @@
 use super::grid::Parts;
 use super::input::SlopeRow;
 use super::operator::{Fine, Packing, Signed};
-use super::regions::Regions;
+use super::regions::{Regions, Runs, Total, sum};
 use super::solver::{Outcome, Output, Stop, Work, solve};
 use super::sweep::Buffers;
 use super::trend::Trend;
-use super::{DepthError, DepthInput, DepthParams, DepthResult, coarsen, right_side};
+use super::{DepthError, DepthInput, DepthParams, DepthResult, Method, coarsen, right_side};
 use libm::sqrt;
 
 /// Everything a method works with.
@@ -63,6 +63,7 @@ impl Job<'_> {
 
     /// Integrates the slopes in the correction (p) and the direction (q). `so_far` is the result to complete,
     /// `converged` says whether all went well until now.
+    #[inline(never)]
     pub fn depth(mut self, so_far: DepthResult, converged: bool) -> Answer {
         let params = self.params;
         let packing = Signed { mass: params.prior_weight as f32 };
@@ -126,44 +127,62 @@ impl Job<'_> {
 
     /// Puts the trend back, frees every region of its mean, scales, and marks what has no depth. Returns the number of
     /// regions.
+    #[inline(never)]
     fn finish(&mut self, trend: &Trend) -> usize {
         let Parts { grid, fine, .. } = &mut self.parts;
-        let (input, output) = (self.input, &mut self.output);
+        let output = &mut self.output;
         let weights: &[f32] = fine.weights;
-        fine.correction.fill(0.0);
-        fine.direction.fill(0.0);
-        fine.residual.fill(0.0);
         let mut regions = Regions {
             grid: *grid,
             parents: fine.correction,
             sums: fine.direction,
             rests: fine.residual,
+            count: 0,
         };
-        let anchors = |weight: f32| weight < 0.0;
+        // The paper's rectangle is the only one with pixels of weight outside the mask.
+        let mask = if self.params.method == Method::Paper { self.input.mask } else { None };
+        let anchored = self.params.prior_weight > 0.0 && self.input.prior.is_some();
         for y in 0..grid.height {
             let [constant, linear, square] = trend.depth(y);
             let row = output.row_mut(y);
-            for (x, z) in row.iter_mut().enumerate() {
-                let x = x as f64;
+            for (x, z) in (0_u32..).zip(row.iter_mut()) {
+                let x = f64::from(x);
                 *z = (f64::from(*z) + (constant + x * (linear + x * square))) as f32;
             }
-            regions.add_row(y, weights, row, input.masked(y), anchors);
+            let (row, weights_row) = (&*row, grid.row(weights, y));
+            regions.add_row(y, weights, |[from, to]| {
+                let run = row.get(from..to).unwrap_or_default();
+                let anchored = anchored
+                    && weights_row.get(from..to).unwrap_or_default().iter().any(|&weight| weight < 0.0);
+                let Some(mask) = mask else { return Total { count: to - from, sum: sum(run), anchored } };
+                let mut total = Total { anchored, ..Total::default() };
+                for (&z, _) in run.iter().zip(mask.row(y).iter().skip(from)).filter(|&(_, &m)| m != 0) {
+                    total.count += 1;
+                    total.sum += f64::from(z);
+                }
+                total
+            });
         }
         let pitch = self.params.pixel_pitch;
         for y in 0..grid.height {
-            let start = grid.start(y);
-            let (mut before, mut offset) = (0.0, 0.0);
-            let pixels = output.row_mut(y).iter_mut().zip(grid.row(weights, y)).zip(input.masked(y));
-            for (x, ((z, &weight), masked)) in pixels.enumerate() {
-                if weight != 0.0 && before == 0.0 {
-                    offset = regions.offset(start + x);
+            let row = output.row_mut(y);
+            let mut done = 0;
+            for [from, to] in Runs::new(grid.row(weights, y)) {
+                row.get_mut(done..from).unwrap_or_default().fill(NO_DEPTH);
+                let offset = regions.offset(from, y);
+                for z in row.get_mut(from..to).unwrap_or_default() {
+                    *z = ((f64::from(*z) - offset) * pitch) as f32;
                 }
-                before = weight;
-                let value = ((f64::from(*z) - offset) * pitch) as f32;
-                *z = if masked && weight != 0.0 { value } else { NO_DEPTH };
+                done = to;
+            }
+            row.get_mut(done..).unwrap_or_default().fill(NO_DEPTH);
+            if let Some(mask) = mask {
+                for (z, _) in row.iter_mut().zip(mask.row(y)).filter(|&(_, &m)| m == 0) {
+                    *z = NO_DEPTH;
+                }
             }
         }
-        regions.count()
+        regions.count
     }
 }
 

@@ -10,7 +10,37 @@ const ROOT: u32 = 1 << 31;
 /// Set in a root whose region holds a pixel of known depth.
 const ANCHORED: u32 = 1 << 29;
 
-/// Regions in the making: three arrays in grid layout.
+/// Pixels of one row without a gap: the first and the one behind the last.
+pub(super) type Run = [usize; 2];
+
+/// The runs of a row: pixels that are not zero.
+#[derive(Clone)]
+pub(super) struct Runs<'a> {
+    row: &'a [f32],
+    end: usize,
+}
+
+impl<'a> Runs<'a> {
+    pub const fn new(row: &'a [f32]) -> Self {
+        Self { row, end: 0 }
+    }
+}
+
+impl Iterator for Runs<'_> {
+    type Item = Run;
+
+    fn next(&mut self) -> Option<Run> {
+        let rest = self.row.get(self.end..)?;
+        let gap = rest.iter().position(|&v| v != 0.0)?;
+        let rest = rest.get(gap..)?;
+        let len = rest.iter().position(|&v| v == 0.0).unwrap_or(rest.len());
+        let start = self.end + gap;
+        self.end = start + len;
+        Some([start, self.end])
+    }
+}
+
+/// Regions in the making: three arrays in grid layout, of which only the first pixels of runs are used.
 pub(super) struct Regions<'a> {
     pub grid: Grid,
     /// Indices of parents, or counts of roots, as bits.
@@ -19,6 +49,17 @@ pub(super) struct Regions<'a> {
     pub sums: &'a mut [f32],
     /// What the large part rounds away.
     pub rests: &'a mut [f32],
+    /// How many there are so far.
+    pub count: usize,
+}
+
+/// What a run has to say to its region.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Total {
+    pub count: usize,
+    pub sum: f64,
+    /// Some depth in it is known.
+    pub anchored: bool,
 }
 
 impl Regions<'_> {
@@ -52,10 +93,7 @@ impl Regions<'_> {
         f64::from(at(self.sums, root)) + f64::from(at(self.rests, root))
     }
 
-    fn add(&mut self, root: usize, count: u32, anchored: u32, value: f64) {
-        let bits = self.bits(root);
-        self.set_bits(root, (bits + count) | anchored);
-        let sum = self.sum(root) + value;
+    fn set_sum(&mut self, root: usize, sum: f64) {
         let large = sum as f32;
         if let (Some(slot), Some(rest)) = (self.sums.get_mut(root), self.rests.get_mut(root)) {
             *slot = large;
@@ -69,99 +107,64 @@ impl Regions<'_> {
             return;
         }
         let (root, child) = (a.min(b), a.max(b));
-        let bits = self.bits(child);
-        let sum = self.sum(child);
-        self.add(root, bits & (ANCHORED - 1), bits & ANCHORED, sum);
+        let (bits, child_bits) = (self.bits(root), self.bits(child));
+        let anchored = (bits | child_bits) & ANCHORED;
+        let count = (bits & (ANCHORED - 1)) + (child_bits & (ANCHORED - 1));
+        self.set_bits(root, ROOT | anchored | count);
+        self.set_sum(root, self.sum(root) + self.sum(child));
         // Indices fit: see MAX_PIXELS.
-        self.set_bits(child, child_bits(root));
+        self.set_bits(child, u32::try_from(root).unwrap_or(0));
+        self.count -= 1;
     }
 
-    /// Takes in row `y`: `inside` says which pixels there are, `counted` which of them make up the mean, `anchored`
-    /// which of them have a known depth.
-    pub fn add_row(
-        &mut self,
-        y: usize,
-        inside: &[f32],
-        depth: &[f32],
-        counted: impl Iterator<Item = bool>,
-        anchored: impl Fn(f32) -> bool,
-    ) {
-        let start = self.grid.start(y);
-        let (width, stride) = (self.grid.width, self.grid.stride());
-        let (mut run, mut run_above, mut joined) = (None, None, false);
-        let mut total = Total::default();
-        for (x, counted) in counted.take(width).chain(core::iter::once(false)).enumerate() {
-            let index = start + x;
-            let here = at(inside, index);
-            if here == 0.0 || x == width {
-                if let Some(first) = run.take() {
-                    let root = self.root(first);
-                    self.add(root, total.count, total.anchored, total.sum());
-                    total = Total::default();
+    /// Takes in row `y` of `inside`, each run with what `total` says of it.
+    pub fn add_row(&mut self, y: usize, inside: &[f32], total: impl Fn(Run) -> Total) {
+        let grid = self.grid;
+        let (start, start_above) = (grid.start(y), grid.start(y) - grid.stride());
+        let mut above_runs = Runs::new(grid.row_above(inside, y));
+        let mut above = above_runs.next();
+        for run in Runs::new(grid.row(inside, y)) {
+            let [from, to] = run;
+            let Total { count, sum, anchored } = total(run);
+            let anchored = if anchored { ANCHORED } else { 0 };
+            self.set_bits(start + from, ROOT | anchored | u32::try_from(count).unwrap_or(0));
+            self.set_sum(start + from, sum);
+            self.count += 1;
+            while let Some([above_from, above_to]) = above {
+                if above_from >= to {
+                    break;
                 }
-                joined = false;
-            } else if run.is_none() {
-                run = Some(index);
-                self.set_bits(index, ROOT);
-            }
-            if at(inside, index - stride) == 0.0 {
-                run_above = None;
-                joined = false;
-            } else if run_above.is_none() {
-                run_above = Some(index - stride);
-            }
-            if let (Some(first), Some(above)) = (run, run_above)
-                && !joined
-            {
-                self.join(first, above);
-                joined = true;
-            }
-            if run.is_some() && counted {
-                total.add(x, at(depth, x));
-            }
-            if run.is_some() && anchored(here) {
-                total.anchored = ANCHORED;
+                if above_to > from {
+                    self.join(start + from, start_above + above_from);
+                }
+                if above_to > to {
+                    break;
+                }
+                above = above_runs.next();
             }
         }
     }
 
-    /// The number of regions.
-    pub fn count(&self) -> usize {
-        (0..self.grid.height)
-            .map(|y| self.grid.row(self.parents, y).iter().filter(|v| v.to_bits() & ROOT != 0).count())
-            .sum()
-    }
-
-    /// What to take off the run that begins at `index`.
-    pub fn offset(&mut self, index: usize) -> f64 {
-        let root = self.root(index);
+    /// What to take off the run of row `y` that begins in column `x`.
+    pub fn offset(&mut self, x: usize, y: usize) -> f64 {
+        let root = self.root(self.grid.start(y) + x);
         let bits = self.bits(root);
         let count = bits & (ANCHORED - 1);
         if bits & ANCHORED != 0 || count == 0 { 0.0 } else { self.sum(root) / f64::from(count) }
     }
 }
 
-fn child_bits(root: usize) -> u32 {
-    u32::try_from(root).unwrap_or(0) & !ROOT
-}
-
-/// The pixels of a run.
-#[derive(Default)]
-struct Total {
-    lanes: [f64; 4],
-    count: u32,
-    anchored: u32,
-}
-
-impl Total {
-    fn add(&mut self, x: usize, value: f32) {
-        if let Some(lane) = self.lanes.get_mut(x % 4) {
+/// The sum in f64, in four lanes.
+pub(super) fn sum(values: &[f32]) -> f64 {
+    let mut lanes = [0.0_f64; 4];
+    let (chunks, rest) = values.as_chunks::<4>();
+    for chunk in chunks {
+        for (lane, &value) in lanes.iter_mut().zip(chunk) {
             *lane += f64::from(value);
         }
-        self.count += 1;
     }
-
-    fn sum(&self) -> f64 {
-        self.lanes.iter().sum()
+    for (lane, &value) in lanes.iter_mut().zip(rest) {
+        *lane += f64::from(value);
     }
+    lanes.iter().sum()
 }

@@ -3,7 +3,7 @@
 //! Between two neighbouring pixels the depth should differ by the mean of their slopes. Least squares over these
 //! equations, an edge each, has the normal equations `sum of w_ij (z_i - z_j) = sum of w_ij g_ij`.
 
-use super::grid::span;
+use super::grid::Span;
 use super::operator::{Coefficients, Operator, Unit, at};
 use super::sweep::dot;
 use super::trend::Trend;
@@ -23,6 +23,7 @@ struct TrendRow {
 }
 
 /// Writes the right side into `right` and returns the squared norm of what it would be with the trend.
+#[inline(never)]
 pub(super) fn fill<O: Operator>(
     operator: &O,
     spans: &[f32],
@@ -52,10 +53,9 @@ pub(super) fn fill<O: Operator>(
             p: [(p0 - 0.5 * pp) as f32, pp as f32],
             q: [above as f32, below as f32, qp as f32],
         };
-        let (from, to) = span(spans, y);
-        let to = to.min(grid.width);
-        let from = from.min(to);
-        for (from, to, unit) in [(0, from, false), (from, to, true), (to, grid.width, false)] {
+        let span = Span::load(spans, y, grid.width);
+        let ([first, last], [from, to]) = (span.active, span.unit);
+        for (from, to, unit) in [(first, from, false), (from, to, true), (to, last, false)] {
             let (start, n) = (start + from, to - from);
             let cut = |array, start| grid_cut(array, start, n);
             let slopes = Segment {
@@ -70,7 +70,7 @@ pub(super) fn fill<O: Operator>(
                 segment(&row, &trend, &slopes, from, out, whole);
             }
         }
-        let whole = whole.get(..grid.width).unwrap_or_default();
+        let whole = span.cut(whole);
         squared += dot(whole, whole);
     }
     squared
@@ -90,8 +90,7 @@ fn segment<C: Coefficients>(
     whole: &mut [f32],
 ) {
     let n = out.len();
-    let cut = |row: &'_ [f32]| row.len() == n;
-    if !(slopes.p.iter().all(|row| cut(row)) && slopes.q.iter().all(|row| cut(row)) && whole.len() == n) {
+    if slopes.p.iter().chain(&slopes.q).any(|row| row.len() != n) || whole.len() != n {
         return;
     }
     let ([p_left, p, p_right], [q_above, q, q_below]) = (slopes.p, slopes.q);

@@ -10,7 +10,7 @@
 //! Linear Systems", 2nd ed., algorithm 9.1.
 
 use super::coarsen::equations;
-use super::grid::{Grid, Hierarchy};
+use super::grid::{Grid, Hierarchy, Span};
 use super::operator::Operator;
 use super::sweep::{self, Buffers, dot, map_row, rows_at};
 use libm::sqrt;
@@ -106,15 +106,18 @@ fn turn<O: Operator>(
     let mut product = 0.0;
     for y in 0..=grid.height {
         if y < grid.height {
-            for (d, &c) in grid.row_mut(direction, y).iter_mut().zip(grid.row(correction, y)) {
+            let span = Span::load(spans, y, grid.width);
+            let row = span.cut_mut(grid.row_mut(direction, y));
+            for (d, &c) in row.iter_mut().zip(span.cut(grid.row(correction, y))) {
                 *d = c + factor * *d;
             }
         }
         if let Some(y) = y.checked_sub(1) {
+            let span = Span::load(spans, y, grid.width);
             let rows = rows_at(&grid, direction, y);
             let row = grid.row(direction, y);
-            map_row(operator, spans, y, rows, row, grid.row_mut(correction, y), |p| -p.flow);
-            product += dot(row, grid.row(correction, y));
+            map_row(operator, span, y, rows, row, grid.row_mut(correction, y), |p| -p.flow);
+            product += dot(span.cut(row), span.cut(grid.row(correction, y)));
         }
     }
     product
@@ -130,7 +133,7 @@ pub(super) fn solve<O: Operator>(
     stop: Stop,
 ) -> Option<Outcome> {
     let grid = finest.grid();
-    let mut squared = norm_squared(&grid, work.residual);
+    let mut squared = norm_squared(&grid, hierarchy.spans, work.residual);
     let mut last_product = 0.0;
     let mut cycles = 0;
     while sqrt(squared) > stop.residual && cycles < stop.cycles {
@@ -149,7 +152,7 @@ pub(super) fn solve<O: Operator>(
         }
         let step = (product / applied) as f32;
         squared = match work.direction.as_deref() {
-            Some(direction) => advance(&grid, step, direction, work.correction, work.residual, output),
+            Some(direction) => advance(&grid, spans, step, direction, work.correction, work.residual, output),
             None => {
                 advance_directly(finest, spans, step, work.correction, work.residual, output, buffers)
             }
@@ -161,14 +164,16 @@ pub(super) fn solve<O: Operator>(
 }
 
 /// The squared 2-norm of an array over its grid.
-fn norm_squared(grid: &Grid, array: &[f32]) -> f64 {
-    (0..grid.height).map(|y| dot(grid.row(array, y), grid.row(array, y))).sum()
+fn norm_squared(grid: &Grid, spans: &[f32], array: &[f32]) -> f64 {
+    let rows = (0..grid.height).map(|y| Span::load(spans, y, grid.width).cut(grid.row(array, y)));
+    rows.map(|row| dot(row, row)).sum()
 }
 
 /// Takes the step and returns the squared norm of the new residual.
 #[inline(never)]
 fn advance(
     grid: &Grid,
+    spans: &[f32],
     step: f32,
     direction: &[f32],
     applied: &[f32],
@@ -177,11 +182,13 @@ fn advance(
 ) -> f64 {
     let mut squared = 0.0;
     for y in 0..grid.height {
-        for (z, &d) in output.row_mut(y).iter_mut().zip(grid.row(direction, y)) {
+        let span = Span::load(spans, y, grid.width);
+        let depths = span.cut_mut(output.row_mut(y));
+        for (z, &d) in depths.iter_mut().zip(span.cut(grid.row(direction, y))) {
             *z += step * d;
         }
-        let row = grid.row_mut(residual, y);
-        for (r, &a) in row.iter_mut().zip(grid.row(applied, y)) {
+        let row = span.cut_mut(grid.row_mut(residual, y));
+        for (r, &a) in row.iter_mut().zip(span.cut(grid.row(applied, y))) {
             *r -= step * a;
         }
         squared += dot(row, row);
@@ -195,9 +202,9 @@ fn energy<O: Operator>(operator: &O, spans: &[f32], array: &[f32], buffers: &mut
     let [applied, ..] = buffers.cut(grid.width);
     let mut product = 0.0;
     for y in 0..grid.height {
-        let row = grid.row(array, y);
-        map_row(operator, spans, y, rows_at(&grid, array, y), row, applied, |p| -p.flow);
-        product += dot(row, applied);
+        let (span, row) = (Span::load(spans, y, grid.width), grid.row(array, y));
+        map_row(operator, span, y, rows_at(&grid, array, y), row, applied, |p| -p.flow);
+        product += dot(span.cut(row), span.cut(applied));
     }
     product
 }
@@ -216,12 +223,15 @@ fn advance_directly<O: Operator>(
     let [next, ..] = buffers.cut(grid.width);
     let mut squared = 0.0;
     for y in 0..grid.height {
-        for (z, &d) in output.row_mut(y).iter_mut().zip(grid.row(direction, y)) {
+        let span = Span::load(spans, y, grid.width);
+        let depths = span.cut_mut(output.row_mut(y));
+        for (z, &d) in depths.iter_mut().zip(span.cut(grid.row(direction, y))) {
             *z += step * d;
         }
         let row = grid.row_mut(residual, y);
-        map_row(operator, spans, y, rows_at(&grid, direction, y), row, next, |p| p.right + step * p.flow);
-        row.copy_from_slice(next);
+        map_row(operator, span, y, rows_at(&grid, direction, y), row, next, |p| p.right + step * p.flow);
+        let row = span.cut_mut(row);
+        row.copy_from_slice(span.cut(next));
         squared += dot(row, row);
     }
     squared

@@ -1,7 +1,7 @@
 //! Passes over one grid, several steps deep: while one row is smoothed for the first time, the row above it is
 //! smoothed for the second and the residual of the one above that goes to the coarser grid, all from cache.
 
-use super::grid::{Grid, span};
+use super::grid::{Grid, Span};
 use super::operator::{Coefficients, Operator, Unit, at};
 use super::transfer;
 
@@ -52,7 +52,7 @@ pub(super) struct Rows<'a> {
 #[inline(always)]
 pub(super) fn map_row<O: Operator>(
     operator: &O,
-    spans: &[f32],
+    span: Span,
     y: usize,
     rows: Rows,
     right: &[f32],
@@ -60,11 +60,9 @@ pub(super) fn map_row<O: Operator>(
     formula: impl Fn(Point) -> f32 + Copy,
 ) {
     let grid = operator.grid();
-    let (width, start) = (grid.width, grid.start(y));
-    let (from, to) = span(spans, y);
-    let to = to.min(width);
-    let from = from.min(to);
-    for (from, to) in [(0, from), (to, width)] {
+    let start = grid.start(y);
+    let ([first, last], [from, to]) = (span.active, span.unit);
+    for (from, to) in [(first, from), (to, last)] {
         if from < to
             && let Some(row) = operator.row(start + from, to - from)
         {
@@ -141,7 +139,7 @@ impl<'a> Buffers<'a> {
 #[inline(always)]
 fn smooth_row<O: Operator>(
     operator: &O,
-    spans: &[f32],
+    span: Span,
     y: usize,
     step: f32,
     right: &[f32],
@@ -151,12 +149,12 @@ fn smooth_row<O: Operator>(
 ) {
     let grid = operator.grid();
     let rows = Rows { above: old, ..rows_at(&grid, correction, y) };
-    map_row(operator, spans, y, rows, grid.row(right, y), new, |p| {
+    map_row(operator, span, y, rows, grid.row(right, y), new, |p| {
         p.value + step * p.inverse * (p.right + p.flow)
     });
-    let row = grid.row_mut(correction, y);
-    old.copy_from_slice(row);
-    row.copy_from_slice(new);
+    let row = span.cut_mut(grid.row_mut(correction, y));
+    span.cut_mut(old).copy_from_slice(row);
+    row.copy_from_slice(span.cut(new));
 }
 
 /// Smooths from zero and sends the residual to the right side `coarse` of the next grid.
@@ -174,21 +172,21 @@ pub(super) fn descend<O: Operator>(
     old.fill(0.0);
     coarse.fill(0.0);
     let [first, second] = STEPS;
+    let load = |y| Span::load(spans, y, grid.width);
     for y in 0..grid.height + 2 {
         if y < grid.height {
             // The first step, from zero: neighbours do not matter yet.
-            let right = grid.row(right, y);
-            let rows = Rows { above: right, center: grid.padded_row(correction, y), below: right };
-            map_row(operator, spans, y, rows, right, new, |p| first * p.inverse * p.right);
-            grid.row_mut(correction, y).copy_from_slice(new);
+            let rows = rows_at(&grid, right, y);
+            let (span, out) = (load(y), grid.row_mut(correction, y));
+            map_row(operator, span, y, rows, grid.row(right, y), out, |p| first * p.inverse * p.right);
         }
         if (1..=grid.height).contains(&y) {
-            smooth_row(operator, spans, y - 1, second, right, correction, old, new);
+            smooth_row(operator, load(y - 1), y - 1, second, right, correction, old, new);
         }
         if let Some(y) = y.checked_sub(2) {
-            let rows = rows_at(&grid, correction, y);
-            map_row(operator, spans, y, rows, grid.row(right, y), residual, |p| p.right + p.flow);
-            transfer::restrict(operator, spans, y, residual, coarse);
+            let (span, rows) = (load(y), rows_at(&grid, correction, y));
+            map_row(operator, span, y, rows, grid.row(right, y), residual, |p| p.right + p.flow);
+            transfer::restrict(operator, span, y, residual, coarse);
         }
     }
 }
@@ -209,17 +207,19 @@ pub(super) fn ascend<O: Operator>(
     first_old.fill(0.0);
     second_old.fill(0.0);
     let [first, second] = STEPS;
+    let load = |y| Span::load(spans, y, grid.width);
     let mut product = 0.0;
     for y in 0..grid.height + 2 {
         if y < grid.height {
-            transfer::prolong(operator, spans, y, coarse, correction);
+            transfer::prolong(operator, load(y), y, coarse, correction);
         }
         if (1..=grid.height).contains(&y) {
-            smooth_row(operator, spans, y - 1, second, right, correction, first_old, new);
+            smooth_row(operator, load(y - 1), y - 1, second, right, correction, first_old, new);
         }
         if let Some(y) = y.checked_sub(2) {
-            smooth_row(operator, spans, y, first, right, correction, second_old, new);
-            product += dot(grid.row(right, y), grid.row(correction, y));
+            let span = load(y);
+            smooth_row(operator, span, y, first, right, correction, second_old, new);
+            product += dot(span.cut(grid.row(right, y)), span.cut(grid.row(correction, y)));
         }
     }
     product

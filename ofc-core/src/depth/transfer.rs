@@ -8,7 +8,7 @@
 //! M. Khalil, P. Wesseling, "Vertex-centered and cell-centered multigrid for interface problems", J. Comput. Phys.
 //! 98 (1992); D. Y. Kwak, "V-cycle multigrid for cell-centered finite differences", SIAM J. Sci. Comput. 21 (1999).
 
-use super::grid::{Grid, span};
+use super::grid::{Grid, Span};
 use super::operator::{Attachment, Operator, at};
 
 /// Shares of a pixel's own block, of the block beside it and of the block across.
@@ -44,10 +44,10 @@ fn shares<O: Operator>(operator: &O, x: usize, y: usize) -> Shares {
     }
 }
 
-/// The whole blocks inside the span of row `y`, by column; none if there are too few to be worth it.
-fn uniform_blocks(spans: &[f32], y: usize, width: usize) -> (usize, usize) {
-    let (from, to) = span(spans, y);
-    let (from, to) = (from.div_ceil(2), to.min(width) / 2);
+/// The whole blocks inside the unit part, by column; none if there are too few to be worth it.
+const fn uniform_blocks(span: Span) -> (usize, usize) {
+    let [from, to] = span.unit;
+    let (from, to) = (from.div_ceil(2), to / 2);
     if to < from + 4 { (0, 0) } else { (from, to) }
 }
 
@@ -60,7 +60,7 @@ fn coarse_index(grid: &Grid, x: usize, y: usize) -> Option<usize> {
 #[inline(always)]
 pub(super) fn prolong<O: Operator>(
     operator: &O,
-    spans: &[f32],
+    span: Span,
     y: usize,
     coarse: &[f32],
     correction: &mut [f32],
@@ -68,24 +68,20 @@ pub(super) fn prolong<O: Operator>(
     let grid = operator.grid();
     let coarse_grid = grid.coarser();
     let row = grid.row_mut(correction, y);
-    let (from, to) = uniform_blocks(spans, y, grid.width);
+    let (from, to) = uniform_blocks(span);
     let value =
         |x: usize, y: usize| coarse_index(&coarse_grid, x, y).map_or(0.0, |index| at(coarse, index));
-    for (x, out) in row.iter_mut().enumerate() {
-        if x == 2 * from && from < to {
-            break;
+    let [first, last] = span.active;
+    let parts = if from < to { [(first, 2 * from), (2 * to, last)] } else { [(first, last), (0, 0)] };
+    for (skip, end) in parts {
+        for (x, out) in row.iter_mut().enumerate().take(end).skip(skip) {
+            let [own, beside, across] = shares(operator, x, y);
+            *out += own * value(x / 2, y / 2)
+                + (beside * value(beyond(x), y / 2) + across * value(x / 2, beyond(y)));
         }
-        let [own, beside, across] = shares(operator, x, y);
-        *out += own * value(x / 2, y / 2)
-            + (beside * value(beyond(x), y / 2) + across * value(x / 2, beyond(y)));
     }
     if from >= to {
         return;
-    }
-    for (x, out) in row.iter_mut().enumerate().skip(2 * to) {
-        let [own, beside, across] = shares(operator, x, y);
-        *out += own * value(x / 2, y / 2)
-            + (beside * value(beyond(x), y / 2) + across * value(x / 2, beyond(y)));
     }
     let (start, beyond_start) = (coarse_grid.start(y / 2) + from, coarse_grid.start(beyond(y)) + from);
     let n = to - from;
@@ -112,21 +108,23 @@ pub(super) fn prolong<O: Operator>(
 #[inline(always)]
 pub(super) fn restrict<O: Operator>(
     operator: &O,
-    spans: &[f32],
+    span: Span,
     y: usize,
     residual: &[f32],
     coarse: &mut [f32],
 ) {
     let grid = operator.grid();
     let coarse_grid = grid.coarser();
-    let (from, to) = uniform_blocks(spans, y, grid.width);
+    let (from, to) = uniform_blocks(span);
     let mut add = |x: usize, y: usize, value: f32| {
         if let Some(slot) = coarse_index(&coarse_grid, x, y).and_then(|index| coarse.get_mut(index)) {
             *slot += value;
         }
     };
-    for (ends, skip) in [(2 * from, 0), (grid.width, 2 * to)] {
-        for (x, &value) in residual.iter().enumerate().take(ends).skip(skip) {
+    let [start, last] = span.active;
+    let parts = if from < to { [(start, 2 * from), (2 * to, last)] } else { [(start, last), (0, 0)] };
+    for (skip, end) in parts {
+        for (x, &value) in residual.iter().enumerate().take(end).skip(skip) {
             let [own, beside, across] = shares(operator, x, y);
             add(x / 2, y / 2, own * value);
             if beside != 0.0 {

@@ -30,6 +30,7 @@ struct Moments {
 
 impl Trend {
     /// Fits the slopes `p`, `q` (in grid layout) of pixels whose weight `packed` is not zero.
+    #[inline(never)]
     pub fn fit(grid: &Grid, packed: &[f32], p: &[f32], q: &[f32]) -> Self {
         let middle = [(grid.width - 1) as f64 / 2.0, (grid.height - 1) as f64 / 2.0];
         let unit = middle[0].max(middle[1]).max(1.0);
