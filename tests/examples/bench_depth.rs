@@ -14,7 +14,9 @@ fn floats(path: &str) -> Vec<f32> {
 fn main() {
     let args: Vec<String> = std::env::args().collect();
     let [_, normals, mask, width, height, out, rest @ ..] = args.as_slice() else {
-        eprintln!("bench_depth NORMALS.f32 MASK.u8|- WIDTH HEIGHT DEPTH.f32 [poisson|paper|coupled [REPEATS]]");
+        eprintln!(
+            "bench_depth NORMALS.f32 MASK.u8|- WIDTH HEIGHT DEPTH.f32 [poisson|paper|coupled [REPEATS]]"
+        );
         std::process::exit(2);
     };
     let (width, height): (usize, usize) = (width.parse().expect("width"), height.parse().expect("height"));

@@ -1,1 +1,4 @@
 //! Oracles, scenes and loaders that the tests share.
+#![allow(clippy::missing_panics_doc, clippy::must_use_candidate, reason = "a panic is how a test fails")]
+
+pub mod depth_oracle;

@@ -10,9 +10,8 @@
 //! edges in series), and behind a neck it falls with the number of grids, as the resistance of a neck does.
 
 use super::grid::{CoarseArrays, Grid, Hierarchy, Span};
-use super::operator::{
-    Attachment, Coarse, Fine, Operator, Packing, at, attach_coarse, attach_fine,
-};
+use super::operator::{Attachment, Coarse, Fine, Operator, Packing, at, attach_coarse, attach_fine};
+use super::transfer::beyond;
 
 /// A grid whose attachments can be set.
 trait Attachable {
@@ -70,10 +69,7 @@ fn view<'a>(grid: Grid, arrays: &'a CoarseArrays) -> Coarse<'a> {
 }
 
 /// The operator, right side and correction of a coarse grid.
-pub(super) fn equations<'a>(
-    grid: Grid,
-    arrays: CoarseArrays<'a>,
-) -> (Coarse<'a>, &'a [f32], &'a mut [f32]) {
+pub(super) fn equations(grid: Grid, arrays: CoarseArrays<'_>) -> (Coarse<'_>, &[f32], &mut [f32]) {
     let CoarseArrays { east, south, mass, right, correction } = arrays;
     (Coarse { grid, east, south, mass }, right, correction)
 }
@@ -197,20 +193,9 @@ fn better_block<O: Operator>(operator: &O, index: usize, x: usize, y: usize) -> 
     if operator.attachment(index) != Attachment::None {
         return None;
     }
-    let stride = operator.grid().stride();
-    let (beside, edge_x) = if x.is_multiple_of(2) {
-        (index - 1, operator.east(index - 1))
-    } else {
-        (index + 1, operator.east(index))
-    };
-    let (across, edge_y) = if y.is_multiple_of(2) {
-        (index - stride, operator.south(index - stride))
-    } else {
-        (index + stride, operator.south(index))
-    };
-    let conducts =
-        |edge: f32, other| if operator.attachment(other) == Attachment::Own { edge } else { 0.0 };
-    let (edge_x, edge_y) = (conducts(edge_x, beside), conducts(edge_y, across));
+    let [edge_x, edge_y] = operator
+        .outward(x, y)
+        .map(|(edge, other)| if operator.attachment(other) == Attachment::Own { edge } else { 0.0 });
     if edge_x > 0.0 && edge_x >= edge_y {
         Some(Attachment::Beside)
     } else if edge_y > 0.0 {
@@ -361,14 +346,11 @@ fn add_masses<O: Operator>(operator: &O, spans: &[f32], coarse: &mut CoarseArray
             if mass == 0.0 {
                 continue;
             }
-            let away = |position: usize| {
-                if position.is_multiple_of(2) { (position / 2).wrapping_sub(1) } else { position / 2 + 1 }
-            };
             let (block_x, block_y) = match operator.attachment(start + x) {
                 Attachment::Own => (x / 2, y / 2),
                 Attachment::None => continue,
-                Attachment::Beside => (away(x), y / 2),
-                Attachment::Across => (x / 2, away(y)),
+                Attachment::Beside => (beyond(x), y / 2),
+                Attachment::Across => (x / 2, beyond(y)),
             };
             if block_x < coarse_grid.width
                 && block_y < coarse_grid.height

@@ -148,26 +148,20 @@ pub(super) struct Hierarchy<'a> {
     pub spans: &'a mut [f32],
 }
 
-fn take<'a>(rest: &mut &'a mut [f32], count: usize) -> Option<&'a mut [f32]> {
-    let (head, tail) = core::mem::take(rest).split_at_mut_checked(count)?;
-    *rest = tail;
-    Some(head)
-}
-
 /// Cuts and prepares as much of `workspace` as is needed; `None` if it is too short.
 pub(super) fn split(grid: Grid, workspace: &mut [f32]) -> Option<Parts<'_>> {
     let mut rest = workspace.get_mut(..workspace_len(grid.width, grid.height)?)?;
     let fine = FineArrays {
-        weights: take(&mut rest, grid.len())?,
-        residual: take(&mut rest, grid.len())?,
-        correction: take(&mut rest, grid.len())?,
-        direction: take(&mut rest, grid.len())?,
+        weights: rest.split_off_mut(..grid.len())?,
+        residual: rest.split_off_mut(..grid.len())?,
+        correction: rest.split_off_mut(..grid.len())?,
+        direction: rest.split_off_mut(..grid.len())?,
     };
     for array in [&mut *fine.weights, fine.residual, fine.correction, fine.direction] {
         grid.clear_padding(array);
     }
-    let buffers = take(&mut rest, ROW_BUFFERS as usize * (grid.width + 2))?;
-    let spans = take(&mut rest, SPAN_NUMBERS as usize * (2 * grid.height + MAX_LEVELS))?;
+    let buffers = rest.split_off_mut(..ROW_BUFFERS as usize * (grid.width + 2))?;
+    let spans = rest.split_off_mut(..SPAN_NUMBERS as usize * (2 * grid.height + MAX_LEVELS))?;
     buffers.fill(0.0);
     rest.fill(0.0);
     Some(Parts { grid, fine, hierarchy: Hierarchy { finest: grid, coarse: rest, spans }, buffers })
@@ -235,11 +229,11 @@ impl Hierarchy<'_> {
 fn cut(mut rest: &mut [f32], grid: Grid) -> Option<CoarseArrays<'_>> {
     let len = grid.len();
     Some(CoarseArrays {
-        east: take(&mut rest, len)?,
-        south: take(&mut rest, len)?,
-        mass: take(&mut rest, len)?,
-        right: take(&mut rest, len)?,
-        correction: take(&mut rest, len)?,
+        east: rest.split_off_mut(..len)?,
+        south: rest.split_off_mut(..len)?,
+        mass: rest.split_off_mut(..len)?,
+        right: rest.split_off_mut(..len)?,
+        correction: rest.split_off_mut(..len)?,
     })
 }
 

@@ -1,7 +1,7 @@
 //! What the caller hands in, and how a row of it becomes slopes and weights.
 
 use crate::image::{ImageError, span};
-use libm::{sqrtf};
+use libm::sqrtf;
 
 /// Rows of a picture over borrowed numbers, checked once when made.
 #[derive(Clone, Copy, Debug)]

@@ -27,6 +27,8 @@
 //! assert!((depth[0] - depth[1] - 0.75).abs() < 1e-6);
 //! ```
 
+#![allow(clippy::inline_always, reason = "row kernels are only fast when they melt into one vectorised loop")]
+
 mod coarsen;
 mod coupled;
 mod grid;
@@ -67,9 +69,9 @@ pub struct DepthParams {
     pub method: Method,
     /// Width and height of a pixel on the surface, in the unit that depth is wanted in: positive. Default 1.
     pub pixel_pitch: f64,
-    /// The residual to reach, as a part of the right side's norm: in (0, 1). Default 1e-4.
+    /// The residual to reach, as a part of the right side's norm: in [1e-6, 1]. Default 1e-4.
     pub tolerance: f64,
-    /// Multigrid cycles at most, for each system of equations. Default 200.
+    /// Multigrid cycles at most, for each system of equations. Default 1000.
     pub max_cycles: u32,
     /// Normals of which n3 / |n| is less than this lose weight, with its square, and their slope stops growing: in
     /// [0.001, 1]. Default 0.05 (slopes up to 20).
@@ -87,7 +89,7 @@ impl Default for DepthParams {
             method: Method::Poisson,
             pixel_pitch: 1.0,
             tolerance: 1e-4,
-            max_cycles: 200,
+            max_cycles: 1000,
             min_n3: 0.05,
             prior_weight: 1e-3,
             smoothness: 0.1,
@@ -99,7 +101,7 @@ impl DepthParams {
     fn is_valid(&self) -> bool {
         let within = |value: f64, least: f64, most: f64| value >= least && value <= most;
         within(self.pixel_pitch, 1e-30, 1e30)
-            && within(self.tolerance, f64::MIN_POSITIVE, 1.0)
+            && within(self.tolerance, 1e-6, 1.0)
             && within(self.min_n3, 1e-3, 1.0)
             && within(self.prior_weight, 0.0, 1e6)
             && within(self.smoothness, 1e-3, 1e3)

@@ -113,6 +113,26 @@ pub(super) trait Operator {
     fn attachment(&self, index: usize) -> Attachment;
     /// The grid.
     fn grid(&self) -> Grid;
+
+    /// The two edges of pixel `(x, y)` that lead out of its block, sideways and up or down: their weights and the pixels
+    /// that they lead to.
+    #[inline(always)]
+    fn outward(&self, x: usize, y: usize) -> [(f32, usize); 2] {
+        let grid = self.grid();
+        let (index, stride) = (grid.start(y) + x, grid.stride());
+        [
+            if x.is_multiple_of(2) {
+                (self.east(index - 1), index - 1)
+            } else {
+                (self.east(index), index + 1)
+            },
+            if y.is_multiple_of(2) {
+                (self.south(index - stride), index - stride)
+            } else {
+                (self.south(index), index + stride)
+            },
+        ]
+    }
 }
 
 /// How one number a pixel holds both the root of its weight and its mass.

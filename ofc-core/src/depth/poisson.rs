@@ -94,11 +94,8 @@ impl Job<'_> {
         for y in 0..grid.height {
             self.output.row_mut(y).fill(0.0);
         }
-        let work = Work {
-            residual: fine.residual,
-            correction: fine.correction,
-            direction: Some(fine.direction),
-        };
+        let work =
+            Work { residual: fine.residual, correction: fine.correction, direction: Some(fine.direction) };
         let stop = Stop { residual: params.tolerance * norm, cycles: params.max_cycles };
         let Outcome { cycles, residual } =
             solve(&operator, hierarchy, work, &mut self.output, &mut buffers, stop)?;

@@ -49,10 +49,8 @@ pub(super) fn fill<O: Operator>(
         let [[p0, pp], _] = trend.slopes(y as f64);
         let [_, [above, qp]] = trend.slopes(y as f64 - 0.5);
         let [_, [below, _]] = trend.slopes(y as f64 + 0.5);
-        let trend = TrendRow {
-            p: [(p0 - 0.5 * pp) as f32, pp as f32],
-            q: [above as f32, below as f32, qp as f32],
-        };
+        let trend =
+            TrendRow { p: [(p0 - 0.5 * pp) as f32, pp as f32], q: [above as f32, below as f32, qp as f32] };
         let span = Span::load(spans, y, grid.width);
         let ([first, last], [from, to]) = (span.active, span.unit);
         for (from, to, unit) in [(first, from, false), (from, to, true), (to, last, false)] {

@@ -24,6 +24,13 @@ pub(super) struct Stop {
     pub cycles: u32,
 }
 
+/// Below this part of the first residual, squared, rounding has its say ...
+const ROUNDING: f64 = 1e-8;
+
+/// ... and when the residual rises by this, squared, only rounding is left: equations that fix no mean depth cannot take
+/// what rounding adds to the sum of their right sides.
+const RISE: f64 = 100.0;
+
 /// How it went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Outcome {
@@ -134,6 +141,7 @@ pub(super) fn solve<O: Operator>(
 ) -> Option<Outcome> {
     let grid = finest.grid();
     let mut squared = norm_squared(&grid, hierarchy.spans, work.residual);
+    let (start, mut least) = (squared, squared);
     let mut last_product = 0.0;
     let mut cycles = 0;
     while sqrt(squared) > stop.residual && cycles < stop.cycles {
@@ -153,12 +161,14 @@ pub(super) fn solve<O: Operator>(
         let step = (product / applied) as f32;
         squared = match work.direction.as_deref() {
             Some(direction) => advance(&grid, spans, step, direction, work.correction, work.residual, output),
-            None => {
-                advance_directly(finest, spans, step, work.correction, work.residual, output, buffers)
-            }
+            None => advance_directly(finest, spans, step, work.correction, work.residual, output, buffers),
         };
         last_product = product;
         cycles += 1;
+        least = least.min(squared);
+        if squared > RISE * least && least < ROUNDING * start {
+            break;
+        }
     }
     Some(Outcome { cycles, residual: sqrt(squared) })
 }

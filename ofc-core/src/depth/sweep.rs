@@ -109,11 +109,7 @@ fn segment<C: Coefficients>(
 
 /// The rows `y - 1`, `y`, `y + 1` of one array.
 pub(super) fn rows_at<'a>(grid: &Grid, array: &'a [f32], y: usize) -> Rows<'a> {
-    Rows {
-        above: grid.row_above(array, y),
-        center: grid.padded_row(array, y),
-        below: grid.row(array, y + 1),
-    }
+    Rows { above: grid.row_above(array, y), center: grid.padded_row(array, y), below: grid.row(array, y + 1) }
 }
 
 /// Scratch rows.
@@ -144,8 +140,7 @@ fn smooth_row<O: Operator>(
     step: f32,
     right: &[f32],
     correction: &mut [f32],
-    old: &mut [f32],
-    new: &mut [f32],
+    [old, new]: [&mut [f32]; 2],
 ) {
     let grid = operator.grid();
     let rows = Rows { above: old, ..rows_at(&grid, correction, y) };
@@ -181,7 +176,7 @@ pub(super) fn descend<O: Operator>(
             map_row(operator, span, y, rows, grid.row(right, y), out, |p| first * p.inverse * p.right);
         }
         if (1..=grid.height).contains(&y) {
-            smooth_row(operator, load(y - 1), y - 1, second, right, correction, old, new);
+            smooth_row(operator, load(y - 1), y - 1, second, right, correction, [old, new]);
         }
         if let Some(y) = y.checked_sub(2) {
             let (span, rows) = (load(y), rows_at(&grid, correction, y));
@@ -214,11 +209,11 @@ pub(super) fn ascend<O: Operator>(
             transfer::prolong(operator, load(y), y, coarse, correction);
         }
         if (1..=grid.height).contains(&y) {
-            smooth_row(operator, load(y - 1), y - 1, second, right, correction, first_old, new);
+            smooth_row(operator, load(y - 1), y - 1, second, right, correction, [first_old, new]);
         }
         if let Some(y) = y.checked_sub(2) {
             let span = load(y);
-            smooth_row(operator, span, y, first, right, correction, second_old, new);
+            smooth_row(operator, span, y, first, right, correction, [second_old, new]);
             product += dot(span.cut(grid.row(right, y)), span.cut(grid.row(correction, y)));
         }
     }

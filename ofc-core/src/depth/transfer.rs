@@ -17,28 +17,20 @@ type Shares = [f32; 3];
 const UNIFORM: Shares = [0.5, 0.25, 0.25];
 
 /// Column or row of the block beyond the pixel's edge out of its block; outside the grid it may be one too far.
-const fn beyond(position: usize) -> usize {
+pub(super) const fn beyond(position: usize) -> usize {
     if position.is_multiple_of(2) { (position / 2).wrapping_sub(1) } else { position / 2 + 1 }
 }
 
 /// The shares of pixel `(x, y)`.
 fn shares<O: Operator>(operator: &O, x: usize, y: usize) -> Shares {
-    let grid = operator.grid();
-    let (index, stride) = (grid.start(y) + x, grid.stride());
-    match operator.attachment(index) {
+    match operator.attachment(operator.grid().start(y) + x) {
         Attachment::None => [0.0; 3],
         Attachment::Beside => [0.0, 1.0, 0.0],
         Attachment::Across => [0.0, 0.0, 1.0],
         Attachment::Own => {
-            let (edge_x, neighbor_x) =
-                if x % 2 == 0 { (index - 1, index - 1) } else { (index, index + 1) };
-            let (edge_y, neighbor_y) =
-                if y % 2 == 0 { (index - stride, index - stride) } else { (index, index + stride) };
-            let joins = |weight: f32, neighbor: usize| {
+            let [beside, across] = operator.outward(x, y).map(|(weight, neighbor)| {
                 if weight > 0.0 && operator.attachment(neighbor) == Attachment::Own { 0.25 } else { 0.0 }
-            };
-            let beside = joins(operator.east(edge_x), neighbor_x);
-            let across = joins(operator.south(edge_y), neighbor_y);
+            });
             [1.0 - beside - across, beside, across]
         }
     }
@@ -69,8 +61,7 @@ pub(super) fn prolong<O: Operator>(
     let coarse_grid = grid.coarser();
     let row = grid.row_mut(correction, y);
     let (from, to) = uniform_blocks(span);
-    let value =
-        |x: usize, y: usize| coarse_index(&coarse_grid, x, y).map_or(0.0, |index| at(coarse, index));
+    let value = |x: usize, y: usize| coarse_index(&coarse_grid, x, y).map_or(0.0, |index| at(coarse, index));
     let [first, last] = span.active;
     let parts = if from < to { [(first, 2 * from), (2 * to, last)] } else { [(first, last), (0, 0)] };
     for (skip, end) in parts {
@@ -95,7 +86,8 @@ pub(super) fn prolong<O: Operator>(
         return;
     };
     let [own, beside, _] = UNIFORM;
-    for ((((pair, l), c), r), a) in out.as_chunks_mut::<2>().0.iter_mut().zip(left).zip(center).zip(right).zip(across)
+    for ((((pair, l), c), r), a) in
+        out.as_chunks_mut::<2>().0.iter_mut().zip(left).zip(center).zip(right).zip(across)
     {
         let both = own * c + beside * a;
         let [even, odd] = pair;
