@@ -10,7 +10,7 @@
 
 use super::grid::Parts;
 use super::input::SlopeRow;
-use super::operator::{Fine, OnePlusMass, Packing};
+use super::operator::{Fine, OnePlusMass, Packing, copy};
 use super::poisson::{Answer, Job, pack};
 use super::solver::{Outcome, Stop, Work, solve};
 use super::sweep::{Buffers, dot};
@@ -34,12 +34,12 @@ pub(super) fn integrate(mut job: Job) -> Answer {
     let first = job.smooth(Slope::Q)?;
     let Parts { grid, fine, .. } = &mut job.parts;
     for y in 0..grid.height {
-        grid.row_mut(fine.direction, y).copy_from_slice(job.output.row(y));
+        copy(grid.row_mut(fine.direction, y), job.output.row(y));
     }
     let second = job.smooth(Slope::P)?;
     let Parts { grid, fine, .. } = &mut job.parts;
     for y in 0..grid.height {
-        grid.row_mut(fine.correction, y).copy_from_slice(job.output.row(y));
+        copy(grid.row_mut(fine.correction, y), job.output.row(y));
         for packed in grid.row_mut(fine.weights, y) {
             *packed = packing.root(*packed);
         }

@@ -44,6 +44,14 @@ pub(super) fn at(slice: &[f32], i: usize) -> f32 {
     slice.get(i).copied().unwrap_or(0.0)
 }
 
+/// Copies as much as fits: no lengths to disagree about.
+#[inline(always)]
+pub(super) fn copy(to: &mut [f32], from: &[f32]) {
+    for (to, &from) in to.iter_mut().zip(from) {
+        *to = from;
+    }
+}
+
 /// The coefficients of the equations of neighbouring pixels of one row.
 pub(super) trait Coefficients: Sized {
     /// Weights of the edges to the left, right, upper and lower neighbour of pixel `i`.

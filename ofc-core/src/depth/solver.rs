@@ -11,7 +11,7 @@
 
 use super::coarsen::equations;
 use super::grid::{Grid, Hierarchy, Span};
-use super::operator::Operator;
+use super::operator::{Operator, copy};
 use super::sweep::{self, Buffers, dot, map_row, rows_at};
 use libm::sqrt;
 
@@ -241,7 +241,7 @@ fn advance_directly<O: Operator>(
         let row = grid.row_mut(residual, y);
         map_row(operator, span, y, rows_at(&grid, direction, y), row, next, |p| p.right + step * p.flow);
         let row = span.cut_mut(row);
-        row.copy_from_slice(span.cut(next));
+        copy(row, span.cut(next));
         squared += dot(row, row);
     }
     squared

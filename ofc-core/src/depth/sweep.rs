@@ -2,7 +2,7 @@
 //! smoothed for the second and the residual of the one above that goes to the coarser grid, all from cache.
 
 use super::grid::{Grid, Span};
-use super::operator::{Coefficients, Operator, Unit, at};
+use super::operator::{Coefficients, Operator, Unit, at, copy};
 use super::transfer;
 
 /// The two steps of a Jacobi iteration that damps everything between a quarter and all of the spectrum most evenly:
@@ -148,8 +148,8 @@ fn smooth_row<O: Operator>(
         p.value + step * p.inverse * (p.right + p.flow)
     });
     let row = span.cut_mut(grid.row_mut(correction, y));
-    span.cut_mut(old).copy_from_slice(row);
-    row.copy_from_slice(span.cut(new));
+    copy(span.cut_mut(old), row);
+    copy(row, span.cut(new));
 }
 
 /// Smooths from zero and sends the residual to the right side `coarse` of the next grid.

@@ -35,7 +35,7 @@ impl Trend {
         let middle = [(grid.width - 1) as f64 / 2.0, (grid.height - 1) as f64 / 2.0];
         let unit = middle[0].max(middle[1]).max(1.0);
         let mut moments = Moments::default();
-        for y in (0..grid.height).step_by(grid.height.div_ceil(SAMPLED_ROWS)) {
+        for y in (0..grid.height).step_by(grid.height.div_ceil(SAMPLED_ROWS).max(1)) {
             let v = (middle[1] - y as f64) / unit;
             let (p, q) = (grid.row(p, y), grid.row(q, y));
             for (x, &weight) in grid.row(packed, y).iter().enumerate() {
