@@ -21,6 +21,10 @@ pub(super) const fn beyond(position: usize) -> usize {
     if position.is_multiple_of(2) { (position / 2).wrapping_sub(1) } else { position / 2 + 1 }
 }
 
+/// The coarse grid's right side is the residual times this: a correction that is a little too large leaves ten times less
+/// after four cycles than one without it (measured; 1.00 and 1.04 are both worse).
+const EMPHASIS: f32 = 1.02;
+
 /// The shares of pixel `(x, y)`.
 fn shares<O: Operator>(operator: &O, x: usize, y: usize) -> Shares {
     match operator.attachment(operator.grid().start(y) + x) {
@@ -109,6 +113,7 @@ pub(super) fn restrict<O: Operator>(
     let coarse_grid = grid.coarser();
     let (from, to) = uniform_blocks(span);
     let mut add = |x: usize, y: usize, value: f32| {
+        let value = EMPHASIS * value;
         if let Some(slot) = coarse_index(&coarse_grid, x, y).and_then(|index| coarse.get_mut(index)) {
             *slot += value;
         }
@@ -140,6 +145,7 @@ pub(super) fn restrict<O: Operator>(
     add(from, y / 2, own * (first + at(residual, 2 * from + 1)) + beside * after_first);
     add(to - 1, y / 2, own * (at(residual, 2 * to - 2) + last) + beside * before_last);
     let n = to - from;
+    let [own, beside, across] = UNIFORM.map(|share| EMPHASIS * share);
     let start = coarse_grid.start(beyond(y)) + from;
     let pairs = residual.get(2 * from..2 * to).unwrap_or_default().as_chunks::<2>().0;
     for (slot, [even, odd]) in coarse.get_mut(start..start + n).unwrap_or_default().iter_mut().zip(pairs) {
