@@ -83,7 +83,13 @@ impl Job<'_> {
             self.output.row_mut(y).fill(0.0);
         }
         let operator = Fine { grid: *grid, packed: fine.weights, packing: OnePlusMass };
-        let stop = Stop { residual: params.tolerance * sqrt(squared), cycles: params.max_cycles };
+        // Slopes are only a step on the way: their residual will do.
+        let stop = Stop {
+            residual: params.tolerance * sqrt(squared),
+            energy: f64::INFINITY,
+            equations: 1.0,
+            cycles: params.max_cycles,
+        };
         let work = Work {
             residual: fine.residual,
             correction: fine.correction,

@@ -4,6 +4,7 @@ use super::grid::Parts;
 use super::input::SlopeRow;
 use super::operator::{Fine, Packing, Signed};
 use super::regions::{Regions, Runs, Total, sum};
+use super::right_side::Size;
 use super::solver::{Outcome, Output, Stop, Work, solve};
 use super::sweep::Buffers;
 use super::trend::Trend;
@@ -76,27 +77,32 @@ impl Job<'_> {
         let trend = Trend::fit(grid, fine.weights, fine.correction, fine.direction);
         let mut buffers = Buffers::new(buffers);
         let operator = Fine { grid: *grid, packed: fine.weights, packing };
-        let [whole, ..] = buffers.cut(grid.width);
-        let mut squared = right_side::fill(
+        let [whole, energies, ..] = buffers.cut(grid.width);
+        let mut size = right_side::fill(
             &operator,
             hierarchy.spans,
             &trend,
             fine.correction,
             fine.direction,
             fine.residual,
-            whole,
+            [whole, energies],
         );
         if anchored {
             let prior = Prior { input: self.input, params, trend: &trend };
-            squared += prior.add(&operator, fine.residual);
+            prior.add(&operator, fine.residual, &mut size);
         }
-        let norm = sqrt(squared);
+        let norm = sqrt(size.squared);
         for y in 0..grid.height {
             self.output.row_mut(y).fill(0.0);
         }
         let work =
             Work { residual: fine.residual, correction: fine.correction, direction: Some(fine.direction) };
-        let stop = Stop { residual: params.tolerance * norm, cycles: params.max_cycles };
+        let stop = Stop {
+            residual: params.tolerance * norm,
+            energy: size.energy,
+            equations: 2.0 * so_far.pixels as f64,
+            cycles: params.max_cycles,
+        };
         let Outcome { cycles, residual } =
             solve(&operator, hierarchy, work, &mut self.output, &mut buffers, stop)?;
         let regions = self.finish(&trend);
@@ -194,24 +200,24 @@ struct Prior<'a> {
 }
 
 impl Prior<'_> {
-    /// Adds the known depths, less the trend, to the right side; returns their squared norm.
-    fn add(&self, operator: &Fine<Signed>, right: &mut [f32]) -> f64 {
-        let Some(prior) = self.input.prior else { return 0.0 };
+    /// Adds the known depths, less the trend, to the right side.
+    fn add(&self, operator: &Fine<Signed>, right: &mut [f32], size: &mut Size) {
+        let Some(prior) = self.input.prior else { return };
         let grid = operator.grid;
-        let mut squared = 0.0;
         for y in 0..grid.height {
             let [constant, linear, square] = self.trend.depth(y);
             let packed = grid.row(operator.packed, y);
-            let row = grid.row_mut(right, y).iter_mut().zip(packed).zip(prior.row(y)).enumerate();
-            for (x, ((right, &packed), &prior)) in row {
+            let row = grid.row_mut(right, y).iter_mut().zip(packed).zip(prior.row(y));
+            for (x, ((right, &packed), &prior)) in (0_u32..).zip(row) {
                 let mass = f64::from(operator.packing.mass(packed));
                 if mass > 0.0 {
-                    let (x, depth) = (x as f64, f64::from(prior) / self.params.pixel_pitch);
-                    *right += (mass * (depth - (constant + x * (linear + x * square)))) as f32;
-                    squared += (mass * depth) * (mass * depth);
+                    let (x, depth) = (f64::from(x), f64::from(prior) / self.params.pixel_pitch);
+                    let rest = depth - (constant + x * (linear + x * square));
+                    *right += (mass * rest) as f32;
+                    size.squared += (mass * depth) * (mass * depth);
+                    size.energy += mass * rest * rest;
                 }
             }
         }
-        squared
     }
 }

@@ -5,6 +5,7 @@
 
 use super::grid::Span;
 use super::operator::{Coefficients, Operator, Unit, at};
+use super::regions::sum;
 use super::sweep::dot;
 use super::trend::Trend;
 
@@ -22,7 +23,16 @@ struct TrendRow {
     q: [f32; 3],
 }
 
-/// Writes the right side into `right` and returns the squared norm of what it would be with the trend.
+/// Sizes of a right side.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Size {
+    /// The squared norm of what it would be with the trend.
+    pub squared: f64,
+    /// The weighted sum of squares of what the equations ask for, without the trend.
+    pub energy: f64,
+}
+
+/// Writes the right side into `right`; uses two rows of scratch.
 #[inline(never)]
 pub(super) fn fill<O: Operator>(
     operator: &O,
@@ -31,8 +41,8 @@ pub(super) fn fill<O: Operator>(
     p: &mut [f32],
     q: &mut [f32],
     right: &mut [f32],
-    whole: &mut [f32],
-) -> f64 {
+    [whole, energies]: [&mut [f32]; 2],
+) -> Size {
     let grid = operator.grid();
     for y in 0..grid.height {
         let [[p0, pp], [q0, qp]] = trend.slopes(y as f64);
@@ -43,7 +53,7 @@ pub(super) fn fill<O: Operator>(
             }
         }
     }
-    let mut squared = 0.0;
+    let mut size = Size::default();
     for y in 0..grid.height {
         let (start, stride) = (grid.start(y), grid.stride());
         let [[p0, pp], _] = trend.slopes(y as f64);
@@ -62,16 +72,18 @@ pub(super) fn fill<O: Operator>(
             };
             let Some(out) = right.get_mut(start..start + n) else { continue };
             let Some(whole) = whole.get_mut(from..from + n) else { continue };
+            let Some(energies) = energies.get_mut(from..from + n) else { continue };
             if unit {
-                segment(&Unit, &trend, &slopes, from, out, whole);
+                segment(&Unit, &trend, &slopes, from, [out, whole, energies]);
             } else if let Some(row) = operator.row(start, n) {
-                segment(&row, &trend, &slopes, from, out, whole);
+                segment(&row, &trend, &slopes, from, [out, whole, energies]);
             }
         }
         let whole = span.cut(whole);
-        squared += dot(whole, whole);
+        size.squared += dot(whole, whole);
+        size.energy += sum(span.cut(energies));
     }
-    squared
+    size
 }
 
 fn grid_cut(array: &[f32], start: usize, n: usize) -> &[f32] {
@@ -84,8 +96,7 @@ fn segment<C: Coefficients>(
     trend: &TrendRow,
     slopes: &Segment,
     from: usize,
-    out: &mut [f32],
-    whole: &mut [f32],
+    [out, whole, energies]: [&mut [f32]; 3],
 ) {
     let n = out.len();
     if slopes.p.iter().chain(&slopes.q).any(|row| row.len() != n) || whole.len() != n {
@@ -94,13 +105,15 @@ fn segment<C: Coefficients>(
     let ([p_left, p, p_right], [q_above, q, q_below]) = (slopes.p, slopes.q);
     let [p_trend, pp] = trend.p;
     let [above_trend, below_trend, qp] = trend.q;
-    for (i, (out, whole)) in out.iter_mut().zip(whole).enumerate() {
+    for (i, ((out, whole), energy)) in out.iter_mut().zip(whole).zip(energies).enumerate() {
         let [wl, wr, wu, wd] = coefficients.edges(i);
         let left = 0.5 * (at(p_left, i) + at(p, i));
         let right = 0.5 * (at(p, i) + at(p_right, i));
         let above = 0.5 * (at(q_above, i) + at(q, i));
         let below = 0.5 * (at(q, i) + at(q_below, i));
         *out = (wl * left - wr * right) + (wd * below - wu * above);
+        // Every edge once: the ones to the right and above.
+        *energy = wr * right * right + wu * above * above;
         let x = (from + i) as f32;
         let (left_trend, across) = (p_trend + pp * x, qp * x);
         *whole = *out

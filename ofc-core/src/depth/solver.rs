@@ -20,6 +20,10 @@ use libm::sqrt;
 pub(super) struct Stop {
     /// The residual to reach.
     pub residual: f64,
+    /// The energy (the weighted sum of squares over all equations) of the right side: what is not explained by depth zero.
+    pub energy: f64,
+    /// The number of equations.
+    pub equations: f64,
     /// Cycles at most.
     pub cycles: u32,
 }
@@ -30,6 +34,15 @@ const ROUNDING: f64 = 1e-8;
 /// ... and when the residual rises by this, squared, only rounding is left: equations that fix no mean depth cannot take
 /// what rounding adds to the sum of their right sides.
 const RISE: f64 = 100.0;
+
+/// A residual is blind to errors that only few edges feel, such as the step between two regions that a neck joins. So the
+/// energy of what is still missing must also be below this part of the energy that an equation keeps on average because
+/// the slopes contradict each other: then noise has a larger say in every such step than the iteration has. (At a part
+/// of 0.02 the depths of a disc with a neck are within half a per cent of their error from the exact solution.)
+const NOISE: f64 = 0.02;
+
+/// A residual this much below the one asked for is enough without that, for slopes that hardly contradict each other.
+const ENOUGH: f64 = 0.1;
 
 /// How it went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -142,9 +155,14 @@ pub(super) fn solve<O: Operator>(
     let grid = finest.grid();
     let mut squared = norm_squared(&grid, hierarchy.spans, work.residual);
     let (start, mut least) = (squared, squared);
-    let mut last_product = 0.0;
+    let (mut last_product, mut missing, mut explained) = (0.0, f64::INFINITY, 0.0);
     let mut cycles = 0;
-    while sqrt(squared) > stop.residual && cycles < stop.cycles {
+    while cycles < stop.cycles {
+        let residual = sqrt(squared);
+        let noise = (stop.energy - explained).max(ROUNDING * stop.energy) / stop.equations;
+        if residual <= ENOUGH * stop.residual || residual <= stop.residual && missing <= NOISE * noise {
+            break;
+        }
         let product = cycle(finest, hierarchy, work.residual, work.correction, buffers)?;
         let spans = &*hierarchy.spans;
         let direct = work.direction.as_deref_mut();
@@ -163,6 +181,9 @@ pub(super) fn solve<O: Operator>(
             Some(direction) => advance(&grid, spans, step, direction, work.correction, work.residual, output),
             None => advance_directly(finest, spans, step, work.correction, work.residual, output, buffers),
         };
+        explained += product / applied * product;
+        // As if this step took from the energy what the last one did.
+        missing = if last_product > 0.0 { product / last_product * product } else { f64::INFINITY };
         last_product = product;
         cycles += 1;
         least = least.min(squared);

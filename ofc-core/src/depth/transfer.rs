@@ -135,7 +135,7 @@ pub(super) fn restrict<O: Operator>(
     if from >= to {
         return;
     }
-    let [own, beside, across] = UNIFORM;
+    let [own, beside, _] = UNIFORM;
     // The blocks at both ends lack one neighbour inside the span and give to one outside of it.
     let (first, last) = (at(residual, 2 * from), at(residual, 2 * to - 1));
     add(from.wrapping_sub(1), y / 2, beside * first);
