@@ -57,7 +57,9 @@ pub enum Order {
 }
 
 impl Order {
-    const fn samples(self) -> usize {
+    /// Samples of one pixel.
+    #[must_use]
+    pub const fn samples(self) -> usize {
         match self {
             Self::Rgb | Self::Bgr => 3,
             Self::Rgba | Self::Bgra => 4,
@@ -262,6 +264,27 @@ impl<'a> Image<'a> {
                 visit(&window);
             }
         }
+    }
+
+    /// Writes `value` of every selected pixel into `out`, in picture order, as far as it holds, and returns what was
+    /// written. `selected` gives the bits of a window.
+    pub fn gather<'w>(
+        &self,
+        selected: impl Fn(&Window) -> u64,
+        out: &'w mut [f32],
+        value: impl Fn(f32, f32, f32) -> f64,
+    ) -> &'w mut [f32] {
+        let mut count = 0;
+        self.for_each_window(|window| {
+            for_each_bit(selected(window), |i| {
+                let [r, g, b] = window.pixel(i);
+                if let Some(slot) = out.get_mut(count) {
+                    *slot = value(r, g, b) as f32;
+                    count += 1;
+                }
+            });
+        });
+        out.get_mut(..count).unwrap_or_default()
     }
 }
 

@@ -8,8 +8,19 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod cells;
 pub mod ellipsoid;
 pub mod image;
+pub mod inliers;
+pub mod integrability;
+pub mod lmeds;
+pub mod location;
 pub mod mat3;
+pub mod normals;
+pub mod orientation;
+pub mod regression;
 pub mod rng;
 pub mod select;
+pub mod solve;
+pub mod student_t;
+pub mod tilt;

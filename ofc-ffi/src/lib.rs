@@ -1,2 +1,29 @@
+//! The C ABI of ofc and nothing else: pointers are checked, structs are turned into the core's types, results are
+//! written back. `include/ofc.h` is generated from this crate; its doc comments are the manual.
 #![cfg_attr(not(feature = "std"), no_std)]
-//! The C ABI of ofc.
+#![allow(non_camel_case_types)] // The names are C's.
+#![allow(clippy::missing_safety_doc)] // The documentation is for C callers: every call says what it needs.
+#![allow(clippy::doc_markdown)] // As above: names are not Rust links.
+
+mod image;
+mod orientation;
+mod pointers;
+mod regression;
+mod slants;
+mod solve;
+mod status;
+mod types;
+mod version;
+
+pub use image::*;
+pub use orientation::*;
+pub use pointers::OFC_WORKSPACE_ALIGNMENT;
+pub use regression::*;
+pub use slants::*;
+pub use solve::*;
+pub use status::*;
+pub use types::*;
+pub use version::*;
+
+#[cfg(all(feature = "panic-handler", not(feature = "std")))]
+mod freestanding;

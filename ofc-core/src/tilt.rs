@@ -1,0 +1,3 @@
+//! Tilts of the channels' equivalent lights, one estimator a file.
+
+pub mod pentland;
