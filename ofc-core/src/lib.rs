@@ -8,6 +8,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod constrained_slant;
 pub mod ellipsoid;
 pub mod image;
 pub mod mat3;
