@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn nothing_where_there_is_nothing() {
-        let (tilts, cosines) = ([0.0, 1.0, 2.0], [0.9, 0.8, 0.7]);
+        let (tilts, cosines) = ([0.0, 1.0, 2.0], [0.9, 0.8, 0.9]);
         assert!(curve(1, 0.2, tilts, cosines).is_some());
         assert_eq!(curve(0, 0.2, tilts, cosines), None);
         assert_eq!(curve(9, 0.2, tilts, cosines), None);

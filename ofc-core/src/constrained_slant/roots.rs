@@ -11,28 +11,40 @@
 //! in the box one can be. Near a simple root that is Newton's method with a proof and boxes shrink quadratically;
 //! elsewhere a box is halved. A pair of roots cannot be stepped over: nothing is discarded without a bound.
 //!
+//! The bound is loose for tilts nearly equal or opposite (k near 1 or -1), where f_ij hardly depends on s_i + s_j or
+//! s_i - s_j. Boxes whose sides are such sums and differences make it sharp again: see [`Frame`].
+//!
 //! # Reference
 //! R. E. Moore, R. B. Kearfott, M. J. Cloud, "Introduction to Interval Analysis", SIAM 2009, chapter 8.
 
 use super::curve::branch_of;
+use super::least_squares::descend;
 use super::{Candidates, Constraints, SlantRoot, clamp, inverse, max_abs};
-use crate::mat3;
-use core::f64::consts::FRAC_PI_2;
+use crate::mat3::{self, Mat3};
+use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// A residual up to this is a zero: curves that touch within it have a (double) root.
 const ZERO: f64 = 4e-12;
 /// A solution this far outside [0, pi/2] is one at its end, radians.
 const OVERHANG: f64 = 1e-9;
-/// Solutions closer than this are the same, radians.
-const SAME: f64 = 1e-7;
-/// Half-width of a box that is not divided further, radians. At a double root, residuals in it are below [`ZERO`].
-const LEAF: f64 = 5e-7;
-/// The same, when solutions are not isolated and small boxes would be too many.
-const COARSE_LEAF: f64 = 0.02;
+/// How far boxes are divided, and which solutions count as one, radians.
+struct Resolution {
+    /// Half-width of a box that is not divided further.
+    leaf: f64,
+    /// Solutions closer than this are the same.
+    same: f64,
+}
+
+/// At a double root, residuals in a leaf are below [`ZERO`].
+const FINE: Resolution = Resolution { leaf: 5e-7, same: 1e-7 };
+/// For solutions that are not isolated, where small boxes are too many: a few members of the family will do.
+const COARSE: Resolution = Resolution { leaf: 0.02, same: 0.2 };
 /// Boxes looked at. Isolated roots need about a hundred, double roots a few thousand at the very worst.
-const MAX_BOXES: usize = 20_000;
-/// Boxes that wait: one for each time the first box is halved in each direction down to [`LEAF`] (63), and one.
-const MAX_WAITING: usize = 64;
+const MAX_BOXES: usize = 100_000;
+/// Boxes that wait: one for each time the first box is halved in each direction down to [`FINE`] (at most 66), and some.
+const MAX_WAITING: usize = 72;
+/// |k| from which two tilts count as nearly equal or opposite.
+const SHEARED: f64 = 0.8;
 /// Newton steps from a leaf.
 const MAX_STEPS: usize = 12;
 /// Singular values below this share of the largest are not inverted.
@@ -59,31 +71,34 @@ const SINGULAR: f64 = 1e-9;
 pub fn roots(tilts: [f64; 3], cosines: [f64; 3]) -> Candidates {
     let mut found = Candidates::new();
     if let Some(constraints) = Constraints::new(tilts, cosines) {
-        let complete = search(&constraints, LEAF, &mut found);
+        let complete = search(&constraints, &FINE, &mut found);
         if !complete {
             found.clear();
-            search(&constraints, COARSE_LEAF, &mut found);
+            search(&constraints, &COARSE, &mut found);
         }
     }
     sorted(&found)
 }
 
 /// Collects the solutions; false when the boxes were too many.
-fn search(constraints: &Constraints, leaf: f64, found: &mut Candidates) -> bool {
-    let mut waiting = heapless::Vec::<Slants, MAX_WAITING>::new();
-    let mut next = Some([Interval { low: -OVERHANG, high: FRAC_PI_2 + OVERHANG }; 3]);
-    for _ in 0..MAX_BOXES {
-        let Some(slants) = next else { return true };
-        let narrowed = narrow(constraints, slants);
-        next = match narrowed {
+fn search(constraints: &Constraints, resolution: &Resolution, found: &mut Candidates) -> bool {
+    let frame = Frame::new(constraints);
+    let mut waiting = heapless::Vec::<Cell, MAX_WAITING>::new();
+    let mut next = Some(frame.everything());
+    for n in 0..MAX_BOXES {
+        #[cfg(test)]
+        tests::COUNT.with(|c| c.set(n));
+        let Some(cell) = next else { return true };
+        next = match frame.narrow(cell) {
             None => waiting.pop(),
-            Some(narrowed) if half_width(narrowed) <= leaf => {
-                if let Some(root) = polish(constraints, narrowed.map(Interval::middle)) {
-                    insert(constraints, root, found);
+            Some(narrowed) if half_width(narrowed) <= resolution.leaf => {
+                let middle = mat3::apply(&frame.axes, narrowed.map(Interval::middle));
+                if let Some(root) = polish(constraints, middle) {
+                    insert(constraints, root, resolution.same, found);
                 }
                 waiting.pop()
             }
-            Some(narrowed) if half_width(narrowed) <= 0.5 * half_width(slants) => Some(narrowed),
+            Some(narrowed) if half_width(narrowed) <= 0.5 * half_width(cell) => Some(narrowed),
             Some(narrowed) => {
                 let (low, high) = halves(narrowed);
                 if waiting.push(high).is_err() {
@@ -112,17 +127,17 @@ impl Interval {
     }
 }
 
-/// A box of slants.
-type Slants = [Interval; 3];
+/// A box, in the coordinates of a [`Frame`].
+type Cell = [Interval; 3];
 
-fn half_width(slants: Slants) -> f64 {
-    max_abs(slants.map(Interval::half_width))
+fn half_width(cell: Cell) -> f64 {
+    max_abs(cell.map(Interval::half_width))
 }
 
 /// Halves the box across its widest side.
-fn halves(slants: Slants) -> (Slants, Slants) {
-    let (mut low, mut high) = (slants, slants);
-    let widest = half_width(slants);
+fn halves(cell: Cell) -> (Cell, Cell) {
+    let (mut low, mut high) = (cell, cell);
+    let widest = half_width(cell);
     for (low, high) in low.iter_mut().zip(&mut high) {
         if low.half_width() >= widest {
             let middle = low.middle();
@@ -134,28 +149,81 @@ fn halves(slants: Slants) -> (Slants, Slants) {
     (low, high)
 }
 
-/// The part of a box outside which it holds no solution, `None` when that is all of it.
-fn narrow(constraints: &Constraints, slants: Slants) -> Option<Slants> {
-    let (middle, r) = (slants.map(Interval::middle), slants.map(Interval::half_width));
-    let (f, jacobian) = constraints.evaluate(middle);
-    let rest = [r[0] + r[1], r[0] + r[2], r[1] + r[2]].map(|width| 0.5 * width * width + ZERO);
-    for ((value, row), rest) in f.iter().zip(&jacobian).zip(rest) {
-        if value.abs() > mat3::dot(row.map(f64::abs), r) + rest {
+/// Coordinates v in which boxes are cut: slants = axes v.
+///
+/// One slant is a coordinate itself, the one that takes part in the two pairs with the largest |k|. Each of the others
+/// has as its coordinate its difference from that one where k is near 1, their sum where it is near -1, itself between.
+struct Frame<'a> {
+    constraints: &'a Constraints,
+    axes: Mat3,
+}
+
+impl<'a> Frame<'a> {
+    fn new(constraints: &'a Constraints) -> Self {
+        let [k12, k13, k23] = constraints.k;
+        let slope = |k: f64| if k.abs() < SHEARED { 0.0 } else { k.signum() };
+        let mut axes = mat3::IDENTITY;
+        if k23.abs() <= k12.abs().min(k13.abs()) {
+            axes[1][0] = slope(k12);
+            axes[2][0] = slope(k13);
+        } else if k13.abs() <= k12.abs() {
+            axes[0][1] = slope(k12);
+            axes[2][1] = slope(k23);
+        } else {
+            axes[0][2] = slope(k13);
+            axes[1][2] = slope(k23);
+        }
+        Self { constraints, axes }
+    }
+
+    /// The box that holds all slants in [0, pi/2].
+    fn everything(&self) -> Cell {
+        self.axes.map(|row| {
+            // 1 on the diagonal; beside it -1, 0 or 1, with the opposite sign in the inverse.
+            let sum = row.iter().sum::<f64>();
+            let (below, above) = (if sum > 1.0 { 1.0 } else { 0.0 }, if sum < 1.0 { 2.0 } else { 1.0 });
+            Interval { low: -below * FRAC_PI_2 - 2.0 * OVERHANG, high: above * FRAC_PI_2 + 2.0 * OVERHANG }
+        })
+    }
+
+    /// The part of a box outside which it holds no solution, `None` when that is all of it.
+    fn narrow(&self, cell: Cell) -> Option<Cell> {
+        let (middle, r) = (cell.map(Interval::middle), cell.map(Interval::half_width));
+        let reach = |row: [f64; 3]| mat3::dot(row.map(f64::abs), r);
+        let slants = mat3::apply(&self.axes, middle);
+        let outside =
+            |(slant, row): (&f64, &[f64; 3])| (slant - FRAC_PI_4).abs() > FRAC_PI_4 + OVERHANG + reach(*row);
+        if slants.iter().zip(&self.axes).any(outside) {
             return None;
         }
-    }
-    let mut narrowed = slants;
-    for ((side, row), middle) in narrowed.iter_mut().zip(inverse(&jacobian)).zip(middle) {
-        let newton = middle - mat3::dot(row, f);
-        let spread = mat3::dot(row.map(f64::abs), rest);
-        // With singular derivatives these are not numbers, and max and min leave the side as it is.
-        side.low = side.low.max(newton - spread);
-        side.high = side.high.min(newton + spread);
-        if side.low > side.high {
-            return None;
+        let (f, jacobian) = self.constraints.evaluate(slants);
+        let jacobian = mat3::multiply(&jacobian, &self.axes);
+        // f = (1 + k)/2 cos(s_i - s_j) + (1 - k)/2 cos(s_i + s_j) - h, and the second derivatives of a cosine are at
+        // most 1.
+        let rest = |a: [f64; 3], b: [f64; 3], k: f64| {
+            let (minus, plus) = (reach(difference(a, b)), reach(sum(a, b)));
+            0.25 * ((1.0 + k) * minus * minus + (1.0 - k) * plus * plus) + ZERO
+        };
+        let ([one, two, three], [k12, k13, k23]) = (self.axes, self.constraints.k);
+        let rest = [rest(one, two, k12), rest(one, three, k13), rest(two, three, k23)];
+        for ((value, row), rest) in f.iter().zip(&jacobian).zip(rest) {
+            if value.abs() > reach(*row) + rest {
+                return None;
+            }
         }
+        let mut narrowed = cell;
+        for ((side, row), middle) in narrowed.iter_mut().zip(inverse(&jacobian)).zip(middle) {
+            let newton = middle - mat3::dot(row, f);
+            let spread = mat3::dot(row.map(f64::abs), rest);
+            // With singular derivatives these are not numbers, and max and min leave the side as it is.
+            side.low = side.low.max(newton - spread);
+            side.high = side.high.min(newton + spread);
+            if side.low > side.high {
+                return None;
+            }
+        }
+        Some(narrowed)
     }
-    Some(narrowed)
 }
 
 /// The solution that Newton's method reaches, if it is one. The steps are the shortest that solve the linear
@@ -176,21 +244,31 @@ fn polish(constraints: &Constraints, start: [f64; 3]) -> Option<SlantRoot> {
         slants = [s1 - d1, s2 - d2, s3 - d3];
     }
     let inside = clamp(best);
-    let residual = constraints.residual(inside);
-    let overhang = max_abs(difference(best, inside));
-    let valid = best_residual <= ZERO && (overhang <= OVERHANG || residual <= ZERO);
-    valid.then(|| SlantRoot { slants: inside, branch: branch_of(inside, constraints), residual })
+    let valid = |slants: [f64; 3], limit: f64| {
+        let residual = constraints.residual(slants);
+        let root = SlantRoot { slants, branch: branch_of(slants, constraints), residual };
+        (residual <= limit).then_some(root)
+    };
+    if best_residual <= ZERO && max_abs(difference(best, inside)) <= OVERHANG {
+        return valid(inside, OVERHANG);
+    }
+    // Newton's method went astray from a coarse leaf, or outside along singular derivatives.
+    valid(descend(constraints, clamp(start)), ZERO)
 }
 
 fn difference([a1, a2, a3]: [f64; 3], [b1, b2, b3]: [f64; 3]) -> [f64; 3] {
     [a1 - b1, a2 - b2, a3 - b3]
 }
 
+fn sum([a1, a2, a3]: [f64; 3], [b1, b2, b3]: [f64; 3]) -> [f64; 3] {
+    [a1 + b1, a2 + b2, a3 + b3]
+}
+
 /// Adds a root, or lets it stand for one that is the same. When there is no room it is dropped: that many roots are
 /// never isolated.
-fn insert(constraints: &Constraints, root: SlantRoot, found: &mut Candidates) {
-    let same = found.iter_mut().find(|known| is_same(constraints, known.slants, root.slants));
-    match same {
+fn insert(constraints: &Constraints, root: SlantRoot, same: f64, found: &mut Candidates) {
+    let known = found.iter_mut().find(|known| is_same(constraints, known.slants, root.slants, same));
+    match known {
         Some(known) if root.residual < known.residual => *known = root,
         Some(_) => {}
         None => {
@@ -201,11 +279,11 @@ fn insert(constraints: &Constraints, root: SlantRoot, found: &mut Candidates) {
 
 /// Whether two solutions are close, or everything between them is a solution too: then they are one double root, or
 /// members of one family.
-fn is_same(constraints: &Constraints, a: [f64; 3], b: [f64; 3]) -> bool {
+fn is_same(constraints: &Constraints, a: [f64; 3], b: [f64; 3], same: f64) -> bool {
     let [d1, d2, d3] = difference(b, a);
     let [a1, a2, a3] = a;
     let between = |share: f64| constraints.residual([a1 + share * d1, a2 + share * d2, a3 + share * d3]);
-    max_abs([d1, d2, d3]) <= SAME || [0.25, 0.5, 0.75].into_iter().all(|share| between(share) <= ZERO)
+    max_abs([d1, d2, d3]) <= same || [0.25, 0.5, 0.75].into_iter().all(|share| between(share) <= ZERO)
 }
 
 fn sorted(found: &Candidates) -> Candidates {
@@ -278,6 +356,7 @@ mod tests {
             found.iter().map(|r| (degrees(r.slants), r.branch)).collect::<std::vec::Vec<_>>()
         );
         assert!(found.iter().any(|root| distance(degrees(root.slants), [24.03, 26.75, 6.80]) < 0.005));
+        // The other crossing in Figure 4(a) has negative slants.
         assert_eq!(found.len(), 1);
     }
 
@@ -308,10 +387,12 @@ mod tests {
             let cosines = cosines_of(slants, tilts);
             let found = roots(tilts, cosines);
             let constraints = Constraints::new(tilts, cosines).unwrap();
-            // A family is reported by one member: then all between it and the truth is a solution.
-            let known = found
-                .iter()
-                .any(|r| distance(r.slants, slants) < 2e-6 || is_same(&constraints, r.slants, slants));
+            // A straight family is reported by one member: then all between it and the truth is a solution. A curved
+            // one, which takes lights in one plane, is reported by some members.
+            let [h12, h13, h23] = cosines;
+            let volume = mat3::dot([1.0, h12, h13], mat3::cross([h12, 1.0, h23], [h13, h23, 1.0]));
+            let tolerance = if volume < 1e-9 { 0.3 } else { 2e-6 };
+            let known = found.iter().any(|r| is_same(&constraints, r.slants, slants, tolerance));
             assert!(known, "tilts {:?} slants {:?}: {found:?}", degrees(tilts), degrees(slants));
         }
     }
@@ -343,11 +424,38 @@ mod tests {
     }
 
     #[test]
+    fn zz_probe() {
+        let mut rng = Rng::new(9);
+        let mut boxes = std::vec![];
+        for _ in 0..5000 {
+            let (slants, tilts, cosines) = random_case(&mut rng);
+            let t = std::time::Instant::now();
+            let ok = search(&Constraints::new(tilts, cosines).unwrap(), &FINE, &mut Candidates::new());
+            boxes.push((
+                COUNT.with(|c| c.get()),
+                ok,
+                t.elapsed().as_micros(),
+                slants,
+                Constraints::new(tilts, cosines).unwrap().k,
+                cosines,
+                roots(tilts, cosines).len(),
+            ));
+        }
+        boxes.sort_by_key(|b| b.0);
+        for i in [0, 500, 2500, 4000, 4500, 4750, 4900, 4950, 4980, 4990, 4995, 4997, 4998, 4999] {
+            std::println!("{:?}", boxes[i]);
+        }
+        std::println!("{}", boxes.iter().map(|b| b.0).sum::<usize>());
+    }
+
+    std::thread_local! { pub static COUNT: core::cell::Cell<usize> = const { core::cell::Cell::new(0) }; }
+
+    #[test]
     fn boxes_are_few_and_a_family_ends() {
         let mut rng = Rng::new(9);
         for _ in 0..500 {
             let (_, tilts, cosines) = random_case(&mut rng);
-            assert!(search(&Constraints::new(tilts, cosines).unwrap(), LEAF, &mut Candidates::new()));
+            assert!(search(&Constraints::new(tilts, cosines).unwrap(), &FINE, &mut Candidates::new()));
         }
         // Three equal lights: any common slant will do.
         let found = roots([1.0; 3], [1.0; 3]);
