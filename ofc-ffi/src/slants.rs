@@ -88,7 +88,7 @@ pub unsafe extern "C" fn ofc_constrained_slants_nearest(
         let nearest = constrained_slant::least_squares(tilts, cosines);
         out.write(ofc_slants {
             slant_rad: nearest.slants,
-            residual: nearest.residual,
+            residual: nearest.residuals.iter().fold(0.0, |largest, residual| residual.abs().max(largest)),
             integral: 0.0,
             branch: 0,
             reserved: 0,

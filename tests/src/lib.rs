@@ -1,3 +1,4 @@
 //! Oracles, scenes and loaders that the tests share.
 
 pub mod photographs;
+pub mod slant_oracle;
