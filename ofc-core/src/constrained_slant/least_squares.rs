@@ -51,7 +51,7 @@ const SMALLEST_DAMPING: f64 = 1e-12;
 /// For input that is not finite or has a cosine beyond 2: slants zero, residuals infinite.
 ///
 /// # Scratch
-/// About 6 kB of stack.
+/// About 10 kB of stack.
 ///
 /// # Reference
 /// Section 3.3: if there are no solutions, "fall back".
