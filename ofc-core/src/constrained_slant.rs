@@ -7,8 +7,8 @@
 //! k_ij sin s_i sin s_j + cos s_i cos s_j = h_ij,   k_ij = cos(t_i - t_j),   ij = 12, 13, 23.            (24)
 //! ```
 //!
-//! [`roots`] finds every solution with slants in [0, pi/2], [`least_squares`] the slants that come closest when there
-//! is none, and [`curve`] is what the paper's Figures 2 and 4(a) plot. Pairs of channels are in the order 12, 13, 23
+//! [`roots()`] finds every solution with slants in [0, pi/2], [`least_squares()`] the slants that come closest when there
+//! is none, and [`curve()`] is what the paper's Figures 2 and 4(a) plot. Pairs of channels are in the order 12, 13, 23
 //! everywhere.
 //!
 //! There are at most four isolated solutions: as equations in tan(s/2), (24) has sixteen complex solutions, and of the

@@ -47,9 +47,9 @@ const SINGULAR: f64 = 1e-9;
 ///
 /// A double root, where two solutions are about to vanish, is one solution. When solutions are not isolated (the three
 /// tilts equal or opposite and the lights in one plane, for instance, or one light level and perpendicular to both
-/// others), a straight family of them is reported by one member, a curved one by several. For lights so nearly in one
-/// plane that solutions are isolated only on paper (one in 20,000 random cases), the same coarse search may leave
-/// out one of several.
+/// others), a straight family of them is reported by one member, a curved one by several. Lights so nearly in one
+/// plane that solutions are isolated only on paper count as such a family (none of 200,000 random cases), and one of
+/// several may be left out.
 ///
 /// # Units
 /// Radians; `cosines` are (h12, h13, h23), the angles' between the rows of F.
