@@ -7,8 +7,8 @@
 //! k_ij sin s_i sin s_j + cos s_i cos s_j = h_ij,   k_ij = cos(t_i - t_j),   ij = 12, 13, 23.            (24)
 //! ```
 //!
-//! [`roots`] finds every solution with slants in [0, pi/2], [`least_squares`] the slants that come closest when there
-//! is none, and [`curve`] is what the paper's Figures 2 and 4(a) plot. Pairs of channels are in the order 12, 13, 23
+//! [`roots()`] finds every solution with slants in [0, pi/2], [`least_squares()`] the slants that come closest when there
+//! is none, and [`curve()`] is what the paper's Figures 2 and 4(a) plot. Pairs of channels are in the order 12, 13, 23
 //! everywhere.
 //!
 //! There are at most four isolated solutions: as equations in tan(s/2), (24) has sixteen complex solutions, and of the
@@ -17,6 +17,7 @@
 //! # Reference
 //! Sections 3.2-3.3, eqs. 24-25.
 
+mod cell;
 mod curve;
 mod least_squares;
 mod roots;
@@ -96,6 +97,14 @@ fn max_abs(v: [f64; 3]) -> f64 {
     v.iter().fold(0.0, |largest, component| component.abs().max(largest))
 }
 
+fn difference([a1, a2, a3]: [f64; 3], [b1, b2, b3]: [f64; 3]) -> [f64; 3] {
+    [a1 - b1, a2 - b2, a3 - b3]
+}
+
+fn sum([a1, a2, a3]: [f64; 3], [b1, b2, b3]: [f64; 3]) -> [f64; 3] {
+    [a1 + b1, a2 + b2, a3 + b3]
+}
+
 /// The inverse by cofactors; infinite or not a number where there is none.
 fn inverse(&[a, b, c]: &Mat3) -> Mat3 {
     let (bc, ca, ab) = (mat3::cross(b, c), mat3::cross(c, a), mat3::cross(a, b));
@@ -116,7 +125,7 @@ mod tests {
     /// Random slants and tilts, and the cosines that belong to them.
     pub(super) fn random_case(rng: &mut Rng) -> ([f64; 3], [f64; 3], [f64; 3]) {
         let slants = [rng.unit(), rng.unit(), rng.unit()].map(|unit| unit * FRAC_PI_2);
-        let tilts = [rng.unit(), rng.unit(), rng.unit()].map(|unit| unit * 6.28);
+        let tilts = [rng.unit(), rng.unit(), rng.unit()].map(|unit| unit * core::f64::consts::TAU);
         (slants, tilts, cosines_of(slants, tilts))
     }
 

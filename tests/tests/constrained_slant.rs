@@ -39,8 +39,8 @@ fn case(rng: &mut Rng, n: u32) -> Case {
     if n % 3 == 2 {
         let nearly = 10.0_f64.powf(between(-6.0, -1.0));
         tilts[1] = tilts[0] + FRAC_PI_2 * between(0.0, 4.0).floor() + nearly;
-        if n % 2 == 0 {
-            slants[2] = if n % 4 == 0 { nearly } else { FRAC_PI_2 - nearly };
+        if n.is_multiple_of(2) {
+            slants[2] = if n.is_multiple_of(4) { nearly } else { FRAC_PI_2 - nearly };
         }
     }
     let e = [0, 1, 2].map(|i| direction(slants[i], tilts[i]));
@@ -60,7 +60,7 @@ impl Case {
 
     /// Whether both methods must have this solution.
     fn is_clear(&self, slants: [f64; 3]) -> bool {
-        let at_the_end = |s: f64| s < AT_THE_END || s > FRAC_PI_2 - AT_THE_END;
+        let at_the_end = |s: f64| !(AT_THE_END..=FRAC_PI_2 - AT_THE_END).contains(&s);
         determinant(jacobian(self.k(), slants)).abs() > NEARLY_DOUBLE && !slants.into_iter().any(at_the_end)
     }
 }

@@ -41,7 +41,7 @@ const SMALLEST_DAMPING: f64 = 1e-12;
 
 /// The slants in [0, pi/2] that satisfy eqs. 24 best in the least-squares sense, over the whole range of slants.
 ///
-/// Where eqs. 24 have solutions it is the first of [`roots`]. Otherwise the best of the minima that descents
+/// Where eqs. 24 have solutions it is the first of [`roots()`]. Otherwise the best of the minima that descents
 /// (damped Newton, slants kept in range) reach from the local minima of a grid.
 ///
 /// # Units
@@ -51,7 +51,7 @@ const SMALLEST_DAMPING: f64 = 1e-12;
 /// For input that is not finite or has a cosine beyond 2: slants zero, residuals infinite.
 ///
 /// # Scratch
-/// About 6 kB of stack.
+/// About 10 kB of stack.
 ///
 /// # Reference
 /// Section 3.3: if there are no solutions, "fall back".
