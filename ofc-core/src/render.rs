@@ -97,7 +97,7 @@ pub struct Rendering {
 
 /// Renders a depth map (eq. 5, summed over the lights that each pixel sees).
 ///
-/// A pixel sees light `i` if a_i . n > 0 and, with cast shadows, no part of the surface inside picture and mask is in
+/// A pixel sees light `i` if `a_i . n > 0` and, with cast shadows, no part of the surface inside picture and mask is in
 /// the way.
 ///
 /// # Shape
@@ -107,7 +107,7 @@ pub struct Rendering {
 /// [`RenderError`]; the outputs are then untouched.
 ///
 /// # Scratch
-/// None: a first pass finds the largest modulus, a second one writes. Stack below 1 KiB.
+/// None: a first pass finds the largest modulus, a second one writes. Stack below 3 KiB.
 pub fn render(
     depth: &DepthMap,
     lights: &Lights,

@@ -2,7 +2,8 @@
 //!
 //! The ray is followed from one grid line to the next along its faster axis, so that every step is one pixel there and
 //! the height of the surface is an interpolation between two pixels only. It ends where the ray is above the highest
-//! point of the surface or leaves the picture.
+//! point of the surface or leaves the picture. A coarse table of highest points lets it pass over low ground in one
+//! step; the answer is the same without the table.
 
 use super::depth_map::DepthMap;
 
@@ -12,18 +13,36 @@ const BIAS: f64 = 1e-3;
 /// f32 depths are exact to this share of their size.
 const DEPTH_ROUNDING: f64 = 1.2e-7;
 
+/// The table has this many tiles a side at most.
+const TILES: usize = 16;
+
 /// What is the same for all rays over a surface.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Caster<'a> {
     depth: &'a DepthMap<'a>,
     highest: f64,
     bias: f64,
+    /// A tile has 2^`tile_bits` pixels a side.
+    tile_bits: u32,
+    /// The highest point of each tile, minus infinity where there is no surface.
+    tiles: [[f32; TILES]; TILES],
 }
 
 impl<'a> Caster<'a> {
     pub(super) fn new(depth: &'a DepthMap<'a>, [lowest, highest]: [f64; 2]) -> Self {
         let bias = BIAS * depth.pitch() + DEPTH_ROUNDING * lowest.abs().max(highest.abs());
-        Self { depth, highest, bias }
+        let side = depth.width().max(depth.height());
+        let tile_bits = side.div_ceil(TILES).next_power_of_two().trailing_zeros();
+        let mut tiles = [[f32::NEG_INFINITY; TILES]; TILES];
+        for y in 0..depth.height() {
+            let Some(row) = tiles.get_mut(y >> tile_bits) else { continue };
+            for x in 0..depth.width() {
+                if let (Some(tile), Some(z)) = (row.get_mut(x >> tile_bits), depth.at(x, y)) {
+                    *tile = tile.max(z as f32);
+                }
+            }
+        }
+        Self { depth, highest, bias, tile_bits, tiles }
     }
 
     /// Whether the surface hides the light in `direction` from its own point at column `x` and row `y`.
@@ -37,65 +56,116 @@ impl<'a> Caster<'a> {
             if right == 0.0 {
                 return false;
             }
-            let axes = Axes { along: (x, width, right > 0.0), across: (y, height, down / right.abs()) };
-            self.meets(&axes, start, rise / right.abs(), |along, across| self.depth.at(along, across))
+            let path = Path::new((x, width, right), (y, height, down));
+            self.meets::<false>(&path, start, rise / right.abs())
         } else {
-            let axes = Axes { along: (y, height, down > 0.0), across: (x, width, right / down.abs()) };
-            self.meets(&axes, start, rise / down.abs(), |along, across| self.depth.at(across, along))
+            let path = Path::new((y, height, down), (x, width, right));
+            self.meets::<true>(&path, start, rise / down.abs())
         }
     }
 
-    fn meets(
-        &self,
-        axes: &Axes,
-        start: f64,
-        rise: f64,
-        surface: impl Fn(usize, usize) -> Option<f64>,
-    ) -> bool {
-        let mut steps = axes.steps();
+    /// Whether a ray is below the surface anywhere; `DOWN` says that it is the rows that it follows step by step.
+    fn meets<const DOWN: bool>(&self, path: &Path, start: f64, rise: f64) -> bool {
+        let mut steps = path.steps;
         if rise > 0.0 {
             steps = steps.min(whole((self.highest - start) / rise));
         }
-        (1..=steps).any(|step| {
-            let (along, across, share) = axes.at(step);
-            let height = match (surface(along, across), surface(along, across + 1)) {
-                (Some(near), Some(far)) => near + share * (far - near),
-                // At the mask's edge the nearer pixel decides.
-                (near, far) => match if share < 0.5 { near } else { far } {
-                    Some(height) => height,
-                    None => return false,
-                },
-            };
-            height > start + rise * step as f64
-        })
+        let height = |step: usize| start + rise * step as f64;
+        let mut first = 1;
+        while first <= steps {
+            let last = path.tile_end(first, self.tile_bits).min(steps);
+            let lowest = height(if rise > 0.0 { first } else { last });
+            if self.highest_under::<DOWN>(path, first, last) > lowest
+                && (first..=last).any(|step| self.surface::<DOWN>(path, step) > height(step))
+            {
+                return true;
+            }
+            first = last + 1;
+        }
+        false
+    }
+
+    /// The height of the surface under a ray, minus infinity where there is none.
+    #[inline]
+    fn surface<const DOWN: bool>(&self, path: &Path, step: usize) -> f64 {
+        let along = path.along(step);
+        let at =
+            |across| if DOWN { self.depth.inside(across, along) } else { self.depth.inside(along, across) };
+        let (before, share) = path.across(step);
+        match (at(before), at((before + 1).min(path.across_last))) {
+            (Some(near), Some(far)) => near + share * (far - near),
+            // At the mask's edge the nearer pixel decides.
+            (near, far) => (if share < 0.5 { near } else { far }).unwrap_or(f64::NEG_INFINITY),
+        }
+    }
+
+    /// The highest point of the tiles that a ray passes over from step `first` to `last`, which are in one row of tiles.
+    fn highest_under<const DOWN: bool>(&self, path: &Path, first: usize, last: usize) -> f64 {
+        let along = path.along(first) >> self.tile_bits;
+        let ((one, _), (other, _)) = (path.across(first), path.across(last));
+        let (from, to) = (one.min(other) >> self.tile_bits, (one.max(other) + 1) >> self.tile_bits);
+        let mut highest = f32::NEG_INFINITY;
+        for across in from..=to {
+            let (x, y) = if DOWN { (across, along) } else { (along, across) };
+            // Beyond the last tile there is no surface.
+            if let Some(&tile) = self.tiles.get(y).and_then(|row| row.get(x)) {
+                highest = highest.max(tile);
+            }
+        }
+        f64::from(highest)
     }
 }
 
-/// The picture's axes as a ray sees them.
-struct Axes {
-    /// The faster one: where the ray starts, how many pixels there are, and whether their numbers grow along the ray.
-    along: (usize, usize, bool),
-    /// The other one: where the ray starts, how many pixels there are, and the change in a step, at most 1.
-    across: (usize, usize, f64),
-}
-
-impl Axes {
+/// Where a ray goes in the picture. Along its faster axis it moves by one pixel a step; its place on the other axis is
+/// a fixed-point number: no conversion and no rounding on the way.
+struct Path {
+    along: usize,
+    forward: bool,
+    across: u64,
+    across_step: i64,
+    across_last: usize,
     /// How many steps stay within the picture.
-    fn steps(&self) -> usize {
-        let ((start, size, grows), (across, across_size, slope)) = (self.along, self.across);
-        let along_steps = if grows { size - 1 - start } else { start };
-        let room = if slope > 0.0 { across_size - 1 - across } else { across };
-        let across_steps = if slope == 0.0 { usize::MAX } else { whole(room as f64 / slope.abs()) };
-        along_steps.min(across_steps)
+    steps: usize,
+}
+
+/// Pixels' numbers are below 2^31, so 32 bits are left for the fraction.
+const FRACTION_BITS: u32 = 32;
+const FRACTION: u64 = 1 << FRACTION_BITS;
+
+impl Path {
+    /// The path from a pixel; of each axis its number, how many there are, and the ray's component.
+    fn new(
+        (along, along_size, along_component): (usize, usize, f64),
+        (across, across_size, across_component): (usize, usize, f64),
+    ) -> Self {
+        let across_step = (across_component / along_component.abs() * FRACTION as f64) as i64;
+        let across_last = across_size - 1;
+        let room = if across_step > 0 { across_last - across } else { across };
+        let across_steps =
+            ((room as u64) << FRACTION_BITS).checked_div(across_step.unsigned_abs()).unwrap_or(u64::MAX);
+        let forward = along_component > 0.0;
+        let along_steps = if forward { along_size - 1 - along } else { along };
+        let steps = usize::try_from(across_steps).map_or(along_steps, |steps| along_steps.min(steps));
+        Self { along, forward, across: (across as u64) << FRACTION_BITS, across_step, across_last, steps }
     }
 
-    /// After `step` steps: the pixel along, the pixel across before the ray, and how far the ray is beyond that one.
-    fn at(&self, step: usize) -> (usize, usize, f64) {
-        let ((start, _, grows), (across, _, slope)) = (self.along, self.across);
-        let along = if grows { start.saturating_add(step) } else { start.saturating_sub(step) };
-        let position = across as f64 + slope * step as f64;
-        let before = whole(position);
-        (along, before, position - before as f64)
+    /// The pixel along after `step` steps.
+    const fn along(&self, step: usize) -> usize {
+        if self.forward { self.along.wrapping_add(step) } else { self.along.wrapping_sub(step) }
+    }
+
+    /// The pixel across before the ray after `step` steps, and how far the ray is beyond it.
+    const fn across(&self, step: usize) -> (usize, f64) {
+        // In two's complement a product's low bits are those of the signed one.
+        let across = self.across.wrapping_add((step as u64).wrapping_mul(self.across_step.cast_unsigned()));
+        ((across >> FRACTION_BITS) as usize, (across & (FRACTION - 1)) as f64 * (1.0 / FRACTION as f64))
+    }
+
+    /// The last step from `step` on that is in the same tile along.
+    const fn tile_end(&self, step: usize, tile_bits: u32) -> usize {
+        let last = (1 << tile_bits) - 1;
+        let within = self.along(step) & last;
+        step.saturating_add(if self.forward { last - within } else { within })
     }
 }
 

@@ -86,7 +86,13 @@ impl<'a> DepthMap<'a> {
     #[must_use]
     #[inline]
     pub fn at(&self, x: usize, y: usize) -> Option<f64> {
-        if x >= self.width || y >= self.height || self.mask.is_some_and(|mask| !mask.contains(x, y)) {
+        if x < self.width && y < self.height { self.inside(x, y) } else { None }
+    }
+
+    /// The depth at a pixel of the picture; `None` outside the mask.
+    #[inline]
+    pub(super) fn inside(&self, x: usize, y: usize) -> Option<f64> {
+        if self.mask.is_some_and(|mask| !mask.contains(x, y)) {
             return None;
         }
         let bytes = self.bytes.get(y * self.row_stride + x * Sample::F32.bytes()..)?;

@@ -31,7 +31,7 @@ pub fn table_1_directions() -> [f64; 9] {
 
 /// A depth map and where its object is.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub struct Relief {
     /// Pixels in a row.
     pub width: usize,
     /// Rows.
@@ -42,7 +42,7 @@ pub struct Scene {
     pub mask: Vec<u8>,
 }
 
-impl Scene {
+impl Relief {
     /// Samples z(u, v) at the pixels' centers; `None` is outside the object.
     #[must_use]
     pub fn sample(width: usize, height: usize, z: impl Fn(f64, f64) -> Option<f64>) -> Self {
@@ -69,7 +69,7 @@ impl Scene {
     /// The core's view of `bytes` as this scene's depths, with its mask.
     ///
     /// # Panics
-    /// When `bytes` are not [`Scene::bytes`].
+    /// When `bytes` are not [`Relief::bytes`].
     #[must_use]
     pub fn view<'a>(&'a self, bytes: &'a [u8]) -> DepthMap<'a> {
         DepthMap::new(bytes, self.width, self.height, self.width * 4, 1.0)
@@ -86,9 +86,9 @@ fn gaussian(u: f64, v: f64, center: [f64; 2], width: [f64; 2]) -> f64 {
 
 /// The front half of a sphere of `radius` (in half sides), as far as its slant is at most `slant` degrees.
 #[must_use]
-pub fn sphere(width: usize, height: usize, radius: f64, slant: f64) -> Scene {
+pub fn sphere(width: usize, height: usize, radius: f64, slant: f64) -> Relief {
     let edge = radius * slant.to_radians().sin();
-    Scene::sample(width, height, |u, v| {
+    Relief::sample(width, height, |u, v| {
         let squared = u * u + v * v;
         (squared <= edge * edge && squared < radius * radius).then(|| (radius * radius - squared).sqrt())
     })
@@ -96,8 +96,8 @@ pub fn sphere(width: usize, height: usize, radius: f64, slant: f64) -> Scene {
 
 /// An egg: an ellipsoid whose lower end is blunter.
 #[must_use]
-pub fn egg(width: usize, height: usize) -> Scene {
-    Scene::sample(width, height, |u, v| {
+pub fn egg(width: usize, height: usize) -> Relief {
+    Relief::sample(width, height, |u, v| {
         let girth = 0.62 * (1.0 - 0.16 * v);
         let left = 1.0 - (u / girth).powi(2) - (v / 0.86).powi(2);
         (left > 0.03).then(|| girth * left.sqrt())
@@ -106,14 +106,14 @@ pub fn egg(width: usize, height: usize) -> Scene {
 
 /// A Gaussian bump on a plane that fills the picture.
 #[must_use]
-pub fn bump(width: usize, height: usize) -> Scene {
-    Scene::sample(width, height, |u, v| Some(0.45 * gaussian(u, v, [0.0; 2], [0.5; 2])))
+pub fn bump(width: usize, height: usize) -> Relief {
+    Relief::sample(width, height, |u, v| Some(0.45 * gaussian(u, v, [0.0; 2], [0.5; 2])))
 }
 
 /// MATLAB's `peaks`: hills and hollows.
 #[must_use]
-pub fn peaks(width: usize, height: usize) -> Scene {
-    Scene::sample(width, height, |u, v| {
+pub fn peaks(width: usize, height: usize) -> Relief {
+    Relief::sample(width, height, |u, v| {
         let (x, y) = (3.0 * u, 3.0 * v);
         let first = 3.0 * (1.0 - x).powi(2) * (-x * x - (y + 1.0).powi(2)).exp();
         let second = -10.0 * (x / 5.0 - x.powi(3) - y.powi(5)) * (-x * x - y * y).exp();
@@ -124,8 +124,8 @@ pub fn peaks(width: usize, height: usize) -> Scene {
 
 /// A vase: a surface of revolution about the vertical axis.
 #[must_use]
-pub fn vase(width: usize, height: usize) -> Scene {
-    Scene::sample(width, height, |u, v| {
+pub fn vase(width: usize, height: usize) -> Relief {
+    Relief::sample(width, height, |u, v| {
         let radius = 0.42 + 0.16 * (2.6 * v + 0.9).sin() - 0.05 * v;
         (v.abs() < 0.9 && u.abs() < 0.97 * radius).then(|| (radius * radius - u * u).sqrt())
     })
@@ -133,8 +133,8 @@ pub fn vase(width: usize, height: usize) -> Scene {
 
 /// Rolling ground that fills the picture: waves of many directions, shorter ones lower.
 #[must_use]
-pub fn terrain(width: usize, height: usize) -> Scene {
-    Scene::sample(width, height, |u, v| {
+pub fn terrain(width: usize, height: usize) -> Relief {
+    Relief::sample(width, height, |u, v| {
         let mut z = 0.0;
         for wave in 0..12 {
             let wave = f64::from(wave);
@@ -168,8 +168,8 @@ fn ellipsoid(u: f64, v: f64, center: [f64; 2], axes: [f64; 3]) -> f64 {
 /// A bust in the manner of the paper's plaster Mozart: head with nose, brows, eyes, mouth and waved hair, neck and
 /// shoulders. Smooth inside its mask.
 #[must_use]
-pub fn bust(width: usize, height: usize) -> Scene {
-    Scene::sample(width, height, bust_height)
+pub fn bust(width: usize, height: usize) -> Relief {
+    Relief::sample(width, height, bust_height)
 }
 
 fn bust_height(u: f64, v: f64) -> Option<f64> {
@@ -182,7 +182,7 @@ fn bust_height(u: f64, v: f64) -> Option<f64> {
         ),
         0.06,
     );
-    let waves = 0.011 * (24.0 * (u.abs() + 0.35 * v) + 2.0 * (5.0 * v).sin()).sin() * (1.0 + (7.0 * v).cos());
+    let waves = 0.011 * (24.0 * (side(u) + 0.35 * v) + 2.0 * (5.0 * v).sin()).sin() * (1.0 + (7.0 * v).cos());
     let face = ellipsoid(u, v, [0.0, 0.22], [0.35, 0.50, 0.44]) + features(u, v);
     let head = blend(face, hair_volume + waves, 0.05);
     let neck = ellipsoid(u, v, [0.0, -0.38], [0.20, 0.42, 0.20]);
@@ -193,13 +193,18 @@ fn bust_height(u: f64, v: f64) -> Option<f64> {
     (z > 0.0).then_some(z)
 }
 
+/// The distance from the axis, smooth at the axis itself: both halves of a bust are alike.
+fn side(u: f64) -> f64 {
+    u.hypot(0.03)
+}
+
 /// What a face has beyond an ellipsoid.
 fn features(u: f64, v: f64) -> f64 {
-    // Both halves are alike; the absolute value only meets even functions or features that have faded at the axis.
-    let side = u.abs();
+    let side = side(u);
     let nose = 0.075 * gaussian(u, v, [0.0, 0.13], [0.050, 0.085])
         + 0.045 * gaussian(u, v, [0.0, 0.24], [0.038, 0.11])
-        + 0.020 * (gaussian(u, v, [0.055, 0.095], [0.03, 0.03]) + gaussian(u, v, [-0.055, 0.095], [0.03, 0.03]));
+        + 0.020
+            * (gaussian(u, v, [0.055, 0.095], [0.03, 0.03]) + gaussian(u, v, [-0.055, 0.095], [0.03, 0.03]));
     let brows = 0.026 * gaussian(side, v, [0.13, 0.385], [0.10, 0.035]);
     let sockets = -0.045 * gaussian(side, v, [0.14, 0.30], [0.075, 0.05]);
     let eyes = 0.030 * gaussian(side, v, [0.14, 0.295], [0.040, 0.028]);
