@@ -20,6 +20,7 @@ pub mod mat3;
 pub mod normals;
 pub mod orientation;
 pub mod regression;
+pub mod render;
 pub mod rng;
 pub mod select;
 pub mod solve;
