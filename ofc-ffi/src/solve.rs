@@ -1,7 +1,7 @@
 //! The whole pipeline.
 
 use crate::image::{image, ofc_image};
-use crate::pointers::{Out, Plain, disjoint, extent, input, output_slice, workspace};
+use crate::pointers::{Extent, Out, Plain, disjoint, extent, input, output_slice, workspace};
 use crate::regression::{float_bytes, floats, pixel_count};
 use crate::slants::OFC_MAX_CANDIDATES;
 use crate::status::{
@@ -227,11 +227,9 @@ pub unsafe extern "C" fn ofc_solve(
         let out = Out::new(solution)?;
         let [a, b, c, d, e] = picture.extents;
         let read = [a, b, c, d, e, params_extent];
-        if inlier_mask.is_null() {
-            disjoint(&[scratch, out.extent], &read)?;
-        } else {
-            disjoint(&[scratch, out.extent, extent(inlier_mask.cast_const(), pixels)?], &read)?;
-        }
+        let mask_extent =
+            if inlier_mask.is_null() { Extent::NOTHING } else { extent(inlier_mask.cast_const(), pixels)? };
+        disjoint(&[scratch, out.extent, mask_extent], &read)?;
         // SAFETY: checked and disjoint.
         let found = solve::solve(view, &params, unsafe { floats(workspace, need) }).map_err(of_fit_error)?;
         if !inlier_mask.is_null() {
