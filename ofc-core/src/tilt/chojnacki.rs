@@ -56,7 +56,9 @@ pub const fn workspace_len(pixels: usize) -> usize {
     pixels
 }
 
-/// The largest disc, the first one in picture order, all of whose pixels are inliers; `None` when there is no inlier or
+/// The largest disc, the first one in picture order, inside the inliers. Noise makes single outliers everywhere, and no
+/// disc would be large if they counted: those that are not part of a square of 2 x 2 outliers do not. What is beside
+/// the picture is an outlier. `None` when there is no inlier or
 /// `workspace` is shorter than [`workspace_len`].
 ///
 /// # Scratch
@@ -78,7 +80,31 @@ pub fn largest_disc(image: &Image, inliers: impl Fn(&Window) -> u64, workspace: 
     best
 }
 
-/// How far each pixel is from the nearest one in its column that is no inlier; the rows above and below the picture
+/// Makes ones of the zeros that are not part of a square of four zeros. What is beside the picture is zero.
+fn fill_holes(values: &mut [f32], width: usize) {
+    const FILLED: f32 = -1.0;
+    let height = values.len() / width.max(1);
+    for y in 0..height {
+        for x in 0..width {
+            // Filled in a row above or on the left is still a zero here.
+            let is_zero = |dx: isize, dy: isize| {
+                let place = x.checked_add_signed(dx).zip(y.checked_add_signed(dy));
+                let inside = place.filter(|&(x, y)| x < width && y < height);
+                inside.and_then(|(x, y)| values.get(y * width + x)).is_none_or(|&value| value <= 0.0)
+            };
+            let square = |dx: isize, dy: isize| is_zero(dx, 0) && is_zero(0, dy) && is_zero(dx, dy);
+            let alone = is_zero(0, 0) && !square(1, 1) && !square(1, -1) && !square(-1, 1) && !square(-1, -1);
+            if let Some(value) = values.get_mut(y * width + x).filter(|_| alone) {
+                *value = FILLED;
+            }
+        }
+    }
+    for value in values {
+        *value = value.abs();
+    }
+}
+
+/// How far each pixel is from the nearest one in its column that is no inlier and no hole; the rows above and below the picture
 /// hold none. f32 holds such distances exactly up to 2^24 rows.
 fn column_distances(image: &Image, inliers: impl Fn(&Window) -> u64, distances: &mut [f32]) {
     let width = image.width();
@@ -91,6 +117,7 @@ fn column_distances(image: &Image, inliers: impl Fn(&Window) -> u64, distances: 
             }
         });
     });
+    fill_holes(distances, width);
     for y in 1..image.height() {
         let Some((above, below)) = distances.split_at_mut_checked(y * width) else { break };
         let above = above.iter().skip((y - 1) * width);
