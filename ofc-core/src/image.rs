@@ -295,7 +295,7 @@ impl<'a> Image<'a> {
 
 /// Every `stride` bytes one sample, as many as `out` holds.
 fn read_samples<const N: usize>(bytes: &[u8], stride: usize, out: &mut [f32], load: impl Fn([u8; N]) -> f32) {
-    for (pixel, out) in bytes.chunks(stride).zip(out) {
+    for (pixel, out) in bytes.chunks(stride.max(1)).zip(out) {
         if let Some(&sample) = pixel.first_chunk::<N>() {
             *out = load(sample);
         }

@@ -9,7 +9,9 @@
 extern crate std;
 
 pub mod cells;
+pub mod channel_maxima;
 pub mod constrained_slant;
+pub mod differences;
 pub mod ellipsoid;
 pub mod image;
 pub mod inliers;
@@ -23,6 +25,7 @@ pub mod regression;
 pub mod render;
 pub mod rng;
 pub mod select;
+pub mod slant;
 pub mod solve;
 pub mod student_t;
 pub mod tilt;

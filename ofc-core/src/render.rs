@@ -14,7 +14,7 @@ pub use lights::{Lights, LightsError, MAX_LIGHTS};
 
 use crate::mat3;
 use crate::rng::Rng;
-use cast_shadow::Caster;
+use cast_shadow::{Caster, NO_TILES};
 use libm::sqrt;
 
 /// What is added to eq. 5.
@@ -129,7 +129,9 @@ pub fn render(
         return Err(RenderError::Size);
     }
     let range = depth.range().ok_or(RenderError::NonFiniteDepth)?;
-    let scene = Scene { depth, lights, caster: params.cast_shadows.then(|| Caster::new(depth, range)) };
+    let mut tiles = NO_TILES;
+    let caster = params.cast_shadows.then(|| Caster::new(depth, range, &mut tiles));
+    let scene = Scene { depth, lights, caster };
     let largest = scene.largest_modulus();
     let scale = if params.peak > 0.0 && largest > 0.0 { params.peak / largest } else { 1.0 };
     for y in 0..height {

@@ -1,4 +1,5 @@
 //! The renderer against eqs. 1-7 written out pixel by pixel.
+#![allow(clippy::cast_sign_loss, clippy::cast_possible_wrap, reason = "small pixel numbers")]
 
 use ofc_core::image::{Image, ImageError, Order, Sample, Window};
 use ofc_core::render::{

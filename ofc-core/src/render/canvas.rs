@@ -66,5 +66,6 @@ fn copy<const N: usize>(out: &mut [u8], bytes: [u8; N]) {
 
 #[allow(clippy::cast_sign_loss, reason = "limited to 0 and more")]
 fn quantized(value: f64, largest: f64) -> u16 {
-    floor(value + 0.5).clamp(0.0, largest) as u16
+    // Not `clamp`, which panics where it cannot see that its limits are in order.
+    floor(value + 0.5).max(0.0).min(largest) as u16
 }

@@ -16,24 +16,29 @@ const DEPTH_ROUNDING: f64 = 1.2e-7;
 /// The table has this many tiles a side at most.
 const TILES: usize = 16;
 
+/// The highest point of each tile, minus infinity where there is no surface.
+pub(super) type Tiles = [[f32; TILES]; TILES];
+
+/// No tile has been looked at.
+pub(super) const NO_TILES: Tiles = [[f32::NEG_INFINITY; TILES]; TILES];
+
 /// What is the same for all rays over a surface.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Caster<'a> {
     depth: &'a DepthMap<'a>,
     highest: f64,
     bias: f64,
     /// A tile has 2^`tile_bits` pixels a side.
     tile_bits: u32,
-    /// The highest point of each tile, minus infinity where there is no surface.
-    tiles: [[f32; TILES]; TILES],
+    tiles: &'a Tiles,
 }
 
 impl<'a> Caster<'a> {
-    pub(super) fn new(depth: &'a DepthMap<'a>, [lowest, highest]: [f64; 2]) -> Self {
+    /// `tiles` is [`NO_TILES`]; the table is big for a stack, so it is made in place.
+    pub(super) fn new(depth: &'a DepthMap<'a>, [lowest, highest]: [f64; 2], tiles: &'a mut Tiles) -> Self {
         let bias = BIAS * depth.pitch() + DEPTH_ROUNDING * lowest.abs().max(highest.abs());
         let side = depth.width().max(depth.height());
         let tile_bits = side.div_ceil(TILES).next_power_of_two().trailing_zeros();
-        let mut tiles = [[f32::NEG_INFINITY; TILES]; TILES];
         for y in 0..depth.height() {
             let Some(row) = tiles.get_mut(y >> tile_bits) else { continue };
             for x in 0..depth.width() {
