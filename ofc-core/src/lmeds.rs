@@ -246,22 +246,22 @@ fn moments(image: &Image, inliers: &Inliers, scale: f64) -> Moments {
 /// Rounding to whole steps is noise of this many steps: 1 / sqrt(12).
 const ROUNDING: f64 = 0.288_675_134_594_812_9;
 
-/// The smallest difference between neighbouring inliers in a channel, other than none: how finely the picture is
-/// quantised, whatever the type of its pixels. Zero when there are no differences.
+/// The smallest difference in a channel between an inlier and the one before it, other than none: how finely the
+/// picture is quantised, whatever the type of its pixels. Zero when there are no differences.
 fn smallest_step(image: &Image, inliers: &Inliers) -> f64 {
     let mut smallest = f32::INFINITY;
+    let mut previous = None;
     image.for_each_window(|window| {
-        let bits = inliers.bits(window);
-        for channel in &window.color {
-            for_each_bit(bits & (bits >> 1), |i| {
-                if let Some(&[left, right]) = channel.get(i..i + 2).and_then(|pair| pair.first_chunk()) {
-                    let step = fabsf(left - right);
-                    if step > 0.0 && step < smallest {
-                        smallest = step;
-                    }
+        for_each_bit(inliers.bits(window), |i| {
+            let pixel = window.pixel(i);
+            for (now, before) in pixel.into_iter().zip(previous.unwrap_or(pixel)) {
+                let step = fabsf(now - before);
+                if step > 0.0 && step < smallest {
+                    smallest = step;
                 }
-            });
-        }
+            }
+            previous = Some(pixel);
+        });
     });
     if smallest.is_finite() { f64::from(smallest) } else { 0.0 }
 }
