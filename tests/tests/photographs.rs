@@ -104,10 +104,10 @@ fn a_groove_is_refused_with_the_reason() {
             Params { lmeds: lmeds::Params { seed, ..lmeds::Params::default() }, ..Params::default() };
         let solution = solved(&photograph, &params);
         println!(
-            "{:?}, color deviations {:.2?}, thin axis t {:?}",
+            "{:?}, color deviations {:.2?}, noise margin {:.2?}",
             solution.outcome,
             solution.color_deviations,
-            solution.fit.map(|fit| fit.thin_axis_t)
+            solution.fit.map(|fit| fit.degenerate_noise_deviation / fit.noise_deviation)
         );
         assert!(
             matches!(solution.outcome, Outcome::RankDeficient | Outcome::NotPositiveDefinite),
