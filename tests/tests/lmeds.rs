@@ -66,7 +66,7 @@ fn spoiled(size: usize, noise: f64, per_mille: u32, seed: u64) -> Scene {
 
 #[test]
 fn every_six_of_a_small_picture() {
-    let (mut compared, mut hasty_is_worse) = (0, 0);
+    let mut hasty_is_worse = 0;
     for seed in 0..24 {
         let mut rng = Rng::new(seed);
         let count = 14 + (seed % 3) as usize;
@@ -79,12 +79,9 @@ fn every_six_of_a_small_picture() {
             }
             lit[rng.below(lit.len() as u32) as usize].map(|c| c + noise * normal(&mut rng))
         });
-        // 60,000 of 3003 to 8008 different subsets: each has been drawn but for one in a thousand at most.
-        let found = match fitted(&scene, &Params { subsets: 60_000, ..seeded(seed) }) {
-            // Fewer than twelve inliers are too few for the second fit.
-            Err(FitError::RankDeficient { .. }) => continue,
-            found => found.expect("a fit"),
-        };
+        // 60,000 of 3003 to 8008 different subsets: each has been drawn but for one in a thousand at most. No pixel is
+        // rejected, because less than twelve are too few for the second fit.
+        let found = fitted(&scene, &Params { subsets: 60_000, rejection: 1e9, ..seeded(seed) }).expect("a fit");
         let colors = colors(&scene);
         let best = oracle::exhaustive(&colors);
         assert!(
@@ -95,12 +92,11 @@ fn every_six_of_a_small_picture() {
         let exact = oracle::objective(found.robust, &colors);
         assert!((found.median_residual - exact).abs() <= STORED_AS_F32 * exact + 1e-12);
         // The negative control: a search that is content with the first ellipsoid it finds is told apart.
-        let hasty = fitted(&scene, &Params { subsets: 1, ..seeded(seed) });
+        let hasty = fitted(&scene, &Params { subsets: 1, rejection: 1e9, ..seeded(seed) });
         hasty_is_worse += usize::from(hasty.is_ok_and(|fit| fit.median_residual > 1.1 * best));
-        compared += 1;
     }
-    println!("{compared} pictures compared; one subset is worse on {hasty_is_worse}");
-    assert!(compared >= 12 && hasty_is_worse >= 6);
+    println!("one subset is worse on {hasty_is_worse} of 24");
+    assert!(hasty_is_worse >= 8);
 }
 
 #[test]

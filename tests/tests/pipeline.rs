@@ -127,7 +127,7 @@ fn closed_convex_shapes_end_to_end() {
     for (light, f, steepest) in lights() {
         for (name, axes, noise, limit) in [
             ("sphere", [1.0, 1.0, 1.0], 0.0, 0.01),
-            ("sphere in noise", [1.0, 1.0, 1.0], 0.3, 3.0),
+            ("sphere in noise", [1.0, 1.0, 1.0], 0.2, 3.0),
             ("ellipsoid", [1.1, 1.0, 0.9], 0.0, 6.0),
         ] {
             let radius = 50.0 / steepest.to_radians().sin();
