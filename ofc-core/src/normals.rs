@@ -63,9 +63,7 @@ pub fn normal(f_inverse: &Mat3, color: [f32; 3], length: Length) -> [f64; 3] {
     let n = mat3::apply(f_inverse, color.map(f64::from));
     match length {
         Length::Kept => n,
-        Length::Unit => {
-            let squared = mat3::dot(n, n);
-            if squared > 0.0 { mat3::scale(n, 1.0 / sqrt(squared)) } else { n }
-        }
+        // Of no color nothing comes: zero times the largest factor there is.
+        Length::Unit => mat3::scale(n, 1.0 / sqrt(mat3::dot(n, n).max(f64::MIN_POSITIVE))),
     }
 }
