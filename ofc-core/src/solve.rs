@@ -11,8 +11,10 @@ use crate::orientation::{self, Orientation, RANK_THRESHOLD};
 use crate::tilt::pentland::{self, Tilts};
 use heapless::Vec;
 
-/// A t value of the form along the colors' thinnest direction below this is no evidence of any thickness.
-const SMALLEST_THIN_AXIS_T: f64 = 5.0;
+/// The noise that would make a degenerate scene look like this one must be so many times the noise there is. Degenerate
+/// scenes (cylinders, planes, cones, ramps, mixtures of colors, with and without noise) come to 0.2-1.1, photographs
+/// that give good normals to 1.9-6.7; at 1.5 nearly half of a coefficient of C can be bias.
+const SMALLEST_NOISE_MARGIN: f64 = 1.5;
 
 /// What to do, with the defaults of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -180,7 +182,8 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     solution.color_deviations = fit.color_deviations;
     solution.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
     solution.inlier_count = fit.inliers;
-    if fit.thin_axis_t.abs() < SMALLEST_THIN_AXIS_T {
+    let is_determined = fit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * fit.noise_deviation;
+    if !is_determined {
         return Ok(solution);
     }
 
