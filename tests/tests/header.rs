@@ -5,11 +5,8 @@ use std::path::Path;
 /// What the header says before its first declaration: the manual's first page, and the macros that cbindgen cannot
 /// make from Rust.
 fn preamble() -> String {
-    let [major, minor, patch] = ["MAJOR", "MINOR", "PATCH"].map(|part| match part {
-        "MAJOR" => env!("CARGO_PKG_VERSION_MAJOR"),
-        "MINOR" => env!("CARGO_PKG_VERSION_MINOR"),
-        _ => env!("CARGO_PKG_VERSION_PATCH"),
-    });
+    let [major, minor, patch] =
+        [env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH")];
     include_str!("../../ofc-ffi/header.txt")
         .replace("@MAJOR@", major)
         .replace("@MINOR@", minor)

@@ -81,7 +81,8 @@ fn every_six_of_a_small_picture() {
         });
         // 60,000 of 3003 to 8008 different subsets: each has been drawn but for one in a thousand at most. No pixel is
         // rejected, because less than twelve are too few for the second fit.
-        let found = fitted(&scene, &Params { subsets: 60_000, rejection: 1e9, ..seeded(seed) }).expect("a fit");
+        let found =
+            fitted(&scene, &Params { subsets: 60_000, rejection: 1e9, ..seeded(seed) }).expect("a fit");
         let colors = colors(&scene);
         let best = oracle::exhaustive(&colors);
         assert!(
@@ -192,7 +193,8 @@ fn dispersion_inliers_and_the_second_fit_follow_from_the_first() {
         let found = fitted(&scene, &params).expect("a fit");
 
         let residuals = oracle::residuals(found.robust, &colors);
-        let dispersion = 1.482_602_218_505_602 * (1.0 + 5.0 / (n - 6.0)) * oracle::objective(found.robust, &colors);
+        let dispersion =
+            1.482_602_218_505_602 * (1.0 + 5.0 / (n - 6.0)) * oracle::objective(found.robust, &colors);
         assert!((found.dispersion / dispersion - 1.0).abs() < STORED_AS_F32);
         let r_squared = 1.0 - found.median_residual * found.median_residual;
         assert!((found.r_squared - r_squared).abs() < REORDERED_SUM);
@@ -290,7 +292,8 @@ fn scaling_the_pixels_scales_the_form() {
             assert_eq!(after.robust, before.robust.map(|c| c / square));
             assert_eq!(after.noise_deviation, before.noise_deviation * factor);
             assert_eq!(after.color_deviations, before.color_deviations.map(|d| d * factor));
-            let unitless = |fit: &Fit| (fit.median_residual, fit.inliers, fit.coefficients.map(|e| (e.t, e.p)));
+            let unitless =
+                |fit: &Fit| (fit.median_residual, fit.inliers, fit.coefficients.map(|e| (e.t, e.p)));
             assert_eq!(unitless(&after), unitless(&before));
         }
         for factor in [3.0, 5.0, 1.5, 257.0, 1000.0] {

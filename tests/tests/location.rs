@@ -12,7 +12,8 @@ fn halves(values: &[f32]) -> (Vec<f64>, f64) {
     let most = sorted.len() / 2 + 1;
     let all: Vec<(f64, f64)> = sorted.windows(most).map(|half| (half[0], half[most - 1])).collect();
     let shortest = all.iter().map(|(low, high)| high - low).fold(f64::INFINITY, f64::min);
-    let midpoints = all.iter().filter(|(low, high)| high - low == shortest).map(|(low, high)| 0.5 * (low + high));
+    let midpoints =
+        all.iter().filter(|(low, high)| high - low == shortest).map(|(low, high)| 0.5 * (low + high));
     (midpoints.collect(), 0.5 * shortest)
 }
 
@@ -59,7 +60,8 @@ fn no_place_has_a_smaller_median_distance() {
     for case in 0..200 {
         let count = 2 + rng.below(30);
         let values = values(&mut rng, count, case);
-        let found = shortest_half(&mut values.clone(), &mut vec![0.0; values.len()]).expect("two values or more");
+        let found =
+            shortest_half(&mut values.clone(), &mut vec![0.0; values.len()]).expect("two values or more");
         let here = objective(&values, found.location);
         // The median distance is piecewise linear, its minima are midpoints of two values.
         for a in &values {

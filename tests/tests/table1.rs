@@ -62,8 +62,9 @@ fn the_color_matrix_as_printed_does_not_give_them() {
 fn true_tilts_give_the_true_slants() {
     let found = roots(true_tilts(), decomposed(table_1_f()).cosines);
     assert!(
-        found.iter().any(|root| (0..3)
-            .all(|i| (root.slants[i].to_degrees() - SLANTS[i]).abs() <= TWO_DECIMALS)),
+        found
+            .iter()
+            .any(|root| (0..3).all(|i| (root.slants[i].to_degrees() - SLANTS[i]).abs() <= TWO_DECIMALS)),
         "{found:?}"
     );
 }
