@@ -100,9 +100,8 @@ pub fn eliminate<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Optio
         }
         for row in column + 1..N {
             let factor = a[row][column] / a[column][column];
-            for k in column..N {
-                a[row][k] -= factor * a[column][k];
-            }
+            let pivot_row = a[column];
+            a[row].iter_mut().zip(pivot_row).for_each(|(entry, above)| *entry -= factor * above);
             b[row] -= factor * b[column];
         }
     }

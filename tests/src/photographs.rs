@@ -23,7 +23,7 @@ impl Photograph {
     /// The picture restricted to its mask.
     ///
     /// # Panics
-    /// Never: the loader's sizes agree.
+    /// Never: the loader has checked the sizes.
     #[must_use]
     pub fn image(&self) -> Image<'_> {
         Image::interleaved(&self.rgb, self.width, self.height, self.width * 3, Sample::U8, Order::Rgb)

@@ -49,11 +49,13 @@ pub trait Surface: Fn(f64, f64) -> Option<[f64; 3]> {}
 impl<T: Fn(f64, f64) -> Option<[f64; 3]>> Surface for T {}
 
 /// The cap of a sphere of that radius out to `angle` degrees from its pole.
+#[must_use]
 pub fn sphere(radius: f64, angle: f64) -> impl Surface {
     ellipsoid([radius; 3], angle)
 }
 
 /// An ellipsoid with these semi-axes along x, y and z, where its normal is at most `angle` degrees from z.
+#[must_use]
 pub fn ellipsoid([a, b, c]: [f64; 3], angle: f64) -> impl Surface {
     move |x, y| {
         let z = (1.0 - (x / a).powi(2) - (y / b).powi(2)).max(0.0).sqrt();
@@ -63,6 +65,7 @@ pub fn ellipsoid([a, b, c]: [f64; 3], angle: f64) -> impl Surface {
 }
 
 /// z = -(c1 x^2 + c2 y^2) / 2 - c3 x y where its normal is at most `angle` degrees from z.
+#[must_use]
 pub fn paraboloid([c1, c2, c3]: [f64; 3], angle: f64) -> impl Surface {
     move |x, y| {
         let normal = unit([c1 * x + c3 * y, c2 * y + c3 * x, 1.0]);
@@ -71,6 +74,7 @@ pub fn paraboloid([c1, c2, c3]: [f64; 3], angle: f64) -> impl Surface {
 }
 
 /// A cylinder of that radius, its axis in the picture's plane at `axis` degrees from x, out to `angle` degrees.
+#[must_use]
 pub fn cylinder(radius: f64, axis: f64, angle: f64) -> impl Surface {
     let (sin, cos) = axis.to_radians().sin_cos();
     move |x, y| {
@@ -81,6 +85,7 @@ pub fn cylinder(radius: f64, axis: f64, angle: f64) -> impl Surface {
 }
 
 /// A cone seen from above its tip, normals at `slant` degrees from z.
+#[must_use]
 pub fn cone(radius: f64, slant: f64) -> impl Surface {
     move |x, y| {
         let from_tip = x.hypot(y);
@@ -89,6 +94,7 @@ pub fn cone(radius: f64, slant: f64) -> impl Surface {
 }
 
 /// A plane with one normal everywhere.
+#[must_use]
 pub fn plane(normal: [f64; 3]) -> impl Surface {
     move |_, _| Some(normal)
 }
@@ -219,13 +225,12 @@ impl Encoded {
     #[must_use]
     pub fn image(&self) -> Image<'_> {
         let Self { bytes, layout, row_stride, width, height } = self;
-        match layout.order {
-            Some(order) => Image::interleaved(bytes, *width, *height, *row_stride, layout.sample, order),
-            None => {
-                let plane = row_stride * height;
-                let planes = [&bytes[..plane], &bytes[plane..2 * plane], &bytes[2 * plane..]];
-                Image::planes(planes, *width, *height, *row_stride, layout.sample)
-            }
+        if let Some(order) = layout.order {
+            Image::interleaved(bytes, *width, *height, *row_stride, layout.sample, order)
+        } else {
+            let plane = row_stride * height;
+            let planes = [&bytes[..plane], &bytes[plane..2 * plane], &bytes[2 * plane..]];
+            Image::planes(planes, *width, *height, *row_stride, layout.sample)
         }
         .expect("sizes agree")
     }

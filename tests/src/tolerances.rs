@@ -37,3 +37,14 @@ pub const NOISE_FREE: f64 = 1e-4;
 pub const INTEGRABLE: f64 = 1e-11;
 /// Tilts on a surface with the symmetry of the square, in radians: the mean gradient is exact but for f32 colors.
 pub const SYMMETRIC_TILT: f64 = 1e-5;
+/// What a seed may add to the error on a photograph, in degrees: with each seed other pixels at the border of the contact
+/// are inliers, and they turn Pentland's tilts. The default seed and the middle one of five must do without.
+pub const PHOTOGRAPH_SEED: f64 = 0.5;
+/// Spheres in noise of 0.2 gray values, degrees: noise is rejected more often where the light is far from the normal,
+/// and what is left of the cap is no longer symmetric. With Table 1's lights that turns the tilts by up to 20 degrees,
+/// however small the noise is.
+pub const SPHERE_IN_NOISE: f64 = 5.0;
+/// Ellipsoids with axes 1.1 : 1 : 0.9, degrees: Pentland's tilt favours the direction that bends more.
+pub const ELLIPSOID_TILT: f64 = 6.0;
+/// Spheres without noise from end to end, degrees: colors are f32.
+pub const SPHERE: f64 = 0.01;

@@ -6,9 +6,9 @@ use ofc_tests::linear::{Matrix, apply, inverse, multiply, transpose};
 use ofc_tests::scenes::{Scene, paraboloid, three_lights};
 use ofc_tests::tolerances::{INTEGRABLE, REORDERED_SUM};
 
-/// The mean of (p_y - q_x)^2 over squares of four pixels of the mask; slopes are held at n3 = 0.05 where it is smaller.
+/// The mean of `(p_y - q_x)^2` over squares of four pixels of the mask; slopes are held at n3 = 0.05 where it is smaller.
 fn oracle(scene: &Scene, mask: &[u8], f_inverse: Matrix) -> Option<(f64, usize)> {
-    let (mut sum, mut cells) = (0.0, 0);
+    let (mut sum, mut cells) = (0.0, 0_usize);
     for row in 1..scene.height {
         for column in 1..scene.width {
             let at = |dx: usize, dy: usize| (row - 1 + dy) * scene.width + column - 1 + dx;
@@ -26,7 +26,7 @@ fn oracle(scene: &Scene, mask: &[u8], f_inverse: Matrix) -> Option<(f64, usize)>
             cells += 1;
         }
     }
-    (cells > 0).then(|| (sum / f64::from(cells), cells as usize))
+    (cells > 0).then(|| (sum / cells as f64, cells))
 }
 
 #[test]

@@ -73,11 +73,12 @@ fn explicit_loops_agree_on_every_width_around_the_window() {
                     continue;
                 };
                 let found = found.expect("pairs in every direction");
-                for channel in 0..3 {
-                    let ([x, y], [wanted_x, wanted_y]) = (found.gradients[channel], wanted[channel]);
+                for ((tilt, [x, y]), [wanted_x, wanted_y]) in
+                    found.tilts.iter().zip(found.gradients).zip(wanted)
+                {
                     let tolerance = REORDERED_SUM * 255.0;
                     assert!((x - wanted_x).abs() <= tolerance && (y - wanted_y).abs() <= tolerance);
-                    assert!((found.tilts[channel] - y.atan2(x)).abs() < REORDERED_SUM);
+                    assert!((tilt - y.atan2(x)).abs() < REORDERED_SUM);
                 }
             }
         }

@@ -14,7 +14,7 @@ use ofc_tests::scenes::{
     Layout, Scene, cone, cylinder, direction, ellipsoid as ellipsoid_surface, paraboloid, plane, sphere,
     table_1_f, three_lights,
 };
-use ofc_tests::tolerances::NOISE_FREE;
+use ofc_tests::tolerances::{ELLIPSOID_TILT, NOISE_FREE, SPHERE, SPHERE_IN_NOISE};
 use std::collections::BTreeMap;
 
 fn seeded(seed: u64) -> Params {
@@ -135,9 +135,9 @@ fn closed_convex_shapes_end_to_end() {
     let mut rng = Rng::new(81);
     for (light, f, steepest) in lights() {
         for (name, axes, noise, limit) in [
-            ("sphere", [1.0, 1.0, 1.0], 0.0, 0.01),
-            ("sphere in noise", [1.0, 1.0, 1.0], 0.2, 3.0),
-            ("ellipsoid", [1.1, 1.0, 0.9], 0.0, 6.0),
+            ("sphere", [1.0, 1.0, 1.0], 0.0, SPHERE),
+            ("sphere in noise", [1.0, 1.0, 1.0], 0.2, SPHERE_IN_NOISE),
+            ("ellipsoid", [1.1, 1.0, 0.9], 0.0, ELLIPSOID_TILT),
         ] {
             let radius = 50.0 / steepest.to_radians().sin();
             let surface = ellipsoid_surface(axes.map(|a| a * radius), steepest);
