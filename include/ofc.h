@@ -45,15 +45,20 @@
 #define OFC_VERSION_PATCH 0
 #define OFC_VERSION (OFC_VERSION_MAJOR * 10000 + OFC_VERSION_MINOR * 100 + OFC_VERSION_PATCH)
 
-/* ofc_solve_workspace_size() for the default parameters, as a constant: for static buffers. The second form takes
- * another sample_size. */
+/* Workspace sizes as constants, for static buffers: each is what the function of its name returns. The plain forms of
+ * solve and lmeds are for the default sample_size; the _FOR forms take another. */
 #define OFC_SOLVE_WORKSPACE_SIZE(width, height) OFC_SOLVE_WORKSPACE_SIZE_FOR(width, height, 10000)
-#define OFC_SOLVE_WORKSPACE_SIZE_FOR(width, height, sample_size)                                   \
-    ((size_t)(width) * (size_t)(height) <= (size_t)(sample_size)                                   \
-         ? (size_t)(width) * (size_t)(height) * 16                                                 \
-         : ((size_t)(width) * (size_t)(height) <= (size_t)(sample_size) * 2                        \
-                ? (size_t)(sample_size) * 16                                                       \
-                : (size_t)(width) * (size_t)(height) * 8))
+#define OFC_SOLVE_WORKSPACE_SIZE_FOR(width, height, sample_size)                                              \
+    OFC_SIZE_OF_LARGER(OFC_NORM_LOCATION_WORKSPACE_SIZE(width, height),                                       \
+                       OFC_LMEDS_WORKSPACE_SIZE_FOR(width, height, sample_size))
+#define OFC_LMEDS_WORKSPACE_SIZE(width, height) OFC_LMEDS_WORKSPACE_SIZE_FOR(width, height, 10000)
+#define OFC_LMEDS_WORKSPACE_SIZE_FOR(width, height, sample_size)                                              \
+    OFC_SIZE_OF_LARGER((size_t)(width) * (size_t)(height) * 4,                                                \
+                       OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) * 16)
+#define OFC_NORM_LOCATION_WORKSPACE_SIZE(width, height) ((size_t)(width) * (size_t)(height) * 8)
+#define OFC_LOCATION_WORKSPACE_SIZE(count) ((size_t)(count) * 8)
+#define OFC_SIZE_OF_LARGER(a, b) ((a) > (b) ? (a) : (b))
+#define OFC_SIZE_OF_SMALLER(a, b) ((a) < (b) ? (a) : (b))
 
 
 // Interleaved red, green, blue, 8 bits each.
@@ -628,7 +633,7 @@ size_t ofc_lmeds_workspace_size(int32_t width, int32_t height, const struct ofc_
 // @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS, _DARK or _SATURATED; OFC_STATUS_RANK_DEFICIENT when the colors do
 //         not determine the six coefficients (outputs untouched here); the status of an invalid argument.
 //
-// Stack: below 4 KiB. Reference: sections 2.1-2.2, eqs. 10-12.
+// Stack: below 12 KiB. Reference: sections 2.1-2.2, eqs. 10-12.
 ofc_status ofc_lmeds_fit(const struct ofc_image *image,
                          const struct ofc_lmeds_params *params,
                          void *workspace,
@@ -830,7 +835,7 @@ size_t ofc_solve_workspace_size(int32_t width,
 //         OFC_STATUS_NO_CONSISTENT_SLANTS. A negative status leaves the outputs untouched: OFC_STATUS_TOO_FEW_PIXELS,
 //         OFC_STATUS_DARK, OFC_STATUS_SATURATED, or that of an invalid argument.
 //
-// Stack: below 8 KiB. Reference: section 3.4.
+// Stack: below 24 KiB. Reference: section 3.4.
 ofc_status ofc_solve(const struct ofc_image *image,
                      const struct ofc_solve_params *params,
                      void *workspace,

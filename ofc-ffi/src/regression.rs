@@ -85,7 +85,7 @@ pub unsafe extern "C" fn ofc_lmeds_workspace_size(
 /// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS, _DARK or _SATURATED; OFC_STATUS_RANK_DEFICIENT when the colors do
 ///         not determine the six coefficients (outputs untouched here); the status of an invalid argument.
 ///
-/// Stack: below 4 KiB. Reference: sections 2.1-2.2, eqs. 10-12.
+/// Stack: below 12 KiB. Reference: sections 2.1-2.2, eqs. 10-12.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_lmeds_fit(
     image: *const ofc_image,

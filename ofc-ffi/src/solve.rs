@@ -205,7 +205,7 @@ pub unsafe extern "C" fn ofc_solve_workspace_size(
 ///         OFC_STATUS_NO_CONSISTENT_SLANTS. A negative status leaves the outputs untouched: OFC_STATUS_TOO_FEW_PIXELS,
 ///         OFC_STATUS_DARK, OFC_STATUS_SATURATED, or that of an invalid argument.
 ///
-/// Stack: below 8 KiB. Reference: section 3.4.
+/// Stack: below 24 KiB. Reference: section 3.4.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_solve(
     image: *const ofc_image,

@@ -211,12 +211,19 @@ static void sizes(void **state)
     for (size_t i = 0; i < sizeof edges / sizeof *edges; i++)
         for (size_t j = 0; j < sizeof edges / sizeof *edges; j++) {
             params.lmeds.sample_size = 10000;
+            assert_int_equal(ofc_lmeds_workspace_size(edges[i], edges[j], &params.lmeds),
+                             OFC_LMEDS_WORKSPACE_SIZE(edges[i], edges[j]));
+            assert_int_equal(ofc_norm_location_workspace_size(edges[i], edges[j]),
+                             OFC_NORM_LOCATION_WORKSPACE_SIZE(edges[i], edges[j]));
+            assert_int_equal(ofc_location_workspace_size((size_t)edges[i]), OFC_LOCATION_WORKSPACE_SIZE(edges[i]));
             assert_int_equal(ofc_solve_workspace_size(edges[i], edges[j], &params),
                              OFC_SOLVE_WORKSPACE_SIZE(edges[i], edges[j]));
             for (size_t k = 0; k < sizeof samples / sizeof *samples; k++) {
                 params.lmeds.sample_size = samples[k];
                 assert_int_equal(ofc_solve_workspace_size(edges[i], edges[j], &params),
                                  OFC_SOLVE_WORKSPACE_SIZE_FOR(edges[i], edges[j], samples[k]));
+                assert_int_equal(ofc_lmeds_workspace_size(edges[i], edges[j], &params.lmeds),
+                                 OFC_LMEDS_WORKSPACE_SIZE_FOR(edges[i], edges[j], samples[k]));
             }
         }
     assert_int_equal(ofc_solve_workspace_size(0, 10, &params), 0);
