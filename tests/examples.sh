@@ -39,7 +39,6 @@ json "$out/scene/report.json" 'all(k in r for k in "coefficients C r_squared dis
 json "$out/scene/report.json" 'all(k in c for c in r["coefficients"] for k in ("value", "standard_error", "t", "p"))'
 
 photo=target/c_examples/ofc_photo
-# What it wrote reads back as the truth it is compared with.
 expect 0 "$photo" --help
 says "--planes"
 expect 2 "$photo" --no-such-option
@@ -56,6 +55,11 @@ expect 2 "$photo" --seed many
 # A normal map is no picture of a matte surface: refused or not, but with an answer and its own results.
 expect 0 "$photo" "$out/scene/normals.png" --truth "$out/scene/normals.tiff" --subsets 600 --seed 7 --out "$out/again"
 json "$out/again/report.json" 'r["parameters"] == {"seed": 7, "subsets": 600} and "median_error_deg" in r'
+
+# The TIFF holds plain floats and reads back as what was written.
+python3 tests/plain_tiff.py "$out/again/normals.tiff" || fail "normals.tiff is compressed"
+expect 0 "$photo" "$out/scene/normals.png" --truth "$out/again/normals.tiff" --subsets 600 --seed 7 --out "$out/third"
+json "$out/third/report.json" 'r["median_error_deg"] < 0.001'
 
 expect 0 target/c_examples/minimal
 says "mean error"

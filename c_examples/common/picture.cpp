@@ -135,7 +135,10 @@ void write_normals_tiff(const std::string &path, const cv::Mat &normals)
 {
     cv::Mat zyx;
     cv::cvtColor(normals, zyx, cv::COLOR_RGB2BGR); // imwrite swaps back: the file's samples are x, y, z
-    write_image(path, zyx);
+    // OpenCV's own choice for three floats is LogLuv, which is lossy, cannot hold a negative number, and which few
+    // programs read.
+    constexpr int no_compression = 1;
+    write_image(path, zyx, {cv::IMWRITE_TIFF_COMPRESSION, no_compression});
 }
 
 cv::Mat normal_map(const cv::Mat &normals)
@@ -161,11 +164,11 @@ cv::Mat shade(const cv::Mat &normals, const cv::Vec3d &light)
     return image;
 }
 
-void write_image(const std::string &path, const cv::Mat &image)
+void write_image(const std::string &path, const cv::Mat &image, const std::vector<int> &parameters)
 {
     bool written = false;
     try {
-        written = cv::imwrite(path, image);
+        written = cv::imwrite(path, image, parameters);
     } catch (const cv::Exception &) {
     }
     if (!written)

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 // What the user gave does not fit: the program says so and exits with status 2.
 struct UsageError : std::runtime_error {
@@ -42,5 +43,5 @@ cv::Mat normal_map(const cv::Mat &normals);
 // Brightness under one white light from that direction, 8 bits.
 cv::Mat shade(const cv::Mat &normals, const cv::Vec3d &light);
 
-// Writes an image or throws std::runtime_error.
-void write_image(const std::string &path, const cv::Mat &image);
+// Writes an image, with cv::imwrite's parameters, or throws std::runtime_error.
+void write_image(const std::string &path, const cv::Mat &image, const std::vector<int> &parameters = {});
