@@ -19,6 +19,7 @@ pub mod location;
 pub mod mat3;
 pub mod normals;
 pub mod orientation;
+pub mod orthogonal;
 pub mod regression;
 pub mod rng;
 pub mod select;
