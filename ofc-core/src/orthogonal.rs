@@ -5,11 +5,11 @@
 //! r1, r2, r3 as columns. So F^-1 = (rows) G0 and F = G0^-1 (rows)^T.
 //!
 //! [`annealing`] minimises the integral (15) itself; [`closed_form`] takes r3 from the smoothness condition (16) and the
-//! remaining angle from (15); [`linear`] solves a linear form of (15) for r1 and r2 together. All end in [`Found`]:
-//! none of them can tell a surface from its convex/concave twin, for which rows r1 and r2 have the other sign (section
-//! 2.4), so both are given, and tilts from elsewhere choose between them where there are any.
+//! remaining angle from (15). Both end in [`Found`]: neither can tell a surface from its convex/concave twin, for which
+//! rows r1 and r2 have the other sign (section 2.4), so both are given, and tilts from elsewhere choose between them
+//! where there are any.
 //!
-//! In all of them the slope condition is taken in the form
+//! In both the slope condition is taken in the form
 //!
 //! ```text
 //! n3^2 (p_y - q_x) = -(c1 . (N x N_x) + c2 . (N x N_y)),   c1 = r2 x r3,  c2 = r3 x r1,
@@ -22,7 +22,6 @@
 
 pub mod annealing;
 pub mod closed_form;
-pub mod linear;
 pub(crate) mod polish;
 pub(crate) mod sample;
 

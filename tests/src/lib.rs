@@ -1,4 +1,5 @@
 //! Oracles, scenes and loaders that the tests share.
 
 pub mod photographs;
+pub mod scene;
 pub mod slant_oracle;

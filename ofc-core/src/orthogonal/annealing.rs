@@ -108,11 +108,13 @@ pub fn annealing(
         .get_mut(..workspace_len(pixels, params.sample_cells))
         .ok_or(OrthogonalError::WorkspaceTooShort)?;
     let limit = params.sample_cells as usize;
-    let sample = Sample::gather(image, &problem.inliers, root, limit, workspace).ok_or(OrthogonalError::NoCells)?;
+    let sample =
+        Sample::gather(image, &problem.inliers, root, limit, workspace).ok_or(OrthogonalError::NoCells)?;
     let mut rng = Rng::new(params.seed);
     let mut best: Option<State> = None;
     for chain in 0..params.chains {
-        let share = |chain: u32| u64::from(params.proposals) * u64::from(chain) / u64::from(params.chains.max(1));
+        let share =
+            |chain: u32| u64::from(params.proposals) * u64::from(chain) / u64::from(params.chains.max(1));
         let proposals = (share(chain + 1) - share(chain)) as u32;
         let start = random_frame(&mut rng, chain % 2 == 1);
         let cold = anneal(&sample, start, proposals, params, &mut rng);

@@ -58,7 +58,7 @@ pub fn closed_form(
 }
 
 /// The mean of N over the inliers, not divided by their number; zero when there are none.
-pub(super) fn sum_of_normals(image: &Image, inliers: impl Fn(&Window) -> u64, root: &Mat3) -> [f64; 3] {
+fn sum_of_normals(image: &Image, inliers: impl Fn(&Window) -> u64, root: &Mat3) -> [f64; 3] {
     let mut sum = [0.0; 3];
     image.for_each_window(|window| {
         let mut colors = [0.0; 3];
@@ -127,7 +127,7 @@ impl Angle {
 }
 
 /// The rows with the given r3 for which (15) is smallest.
-pub(super) fn remaining_angle(
+fn remaining_angle(
     image: &Image,
     inliers: impl Fn(&Window) -> u64,
     root: &Mat3,

@@ -101,7 +101,8 @@ mod tests {
         let truth = rotation([0.3, -0.2, 0.4]);
         let mut calls = 0;
         let distance = |rows: &Mat3| {
-            let difference = rows.iter().flatten().zip(truth.iter().flatten()).map(|(a, b)| (a - b) * (a - b));
+            let difference =
+                rows.iter().flatten().zip(truth.iter().flatten()).map(|(a, b)| (a - b) * (a - b));
             difference.sum::<f64>()
         };
         let (found, used) = polish(IDENTITY, distance(&IDENTITY), 200, |rows| {
