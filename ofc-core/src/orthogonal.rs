@@ -24,6 +24,7 @@ pub mod annealing;
 pub mod closed_form;
 pub(crate) mod polish;
 pub(crate) mod sample;
+pub mod tilts_given;
 
 use crate::image::{Image, Window};
 use crate::integrability::{self, Integrability};
