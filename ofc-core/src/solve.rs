@@ -2,17 +2,32 @@
 
 use crate::constrained_slant::{self, MAX_CANDIDATES};
 use crate::ellipsoid::{self, Ellipsoid};
-use crate::image::{Census, Image, Usable};
+use crate::image::{Census, Image, Usable, Window};
 use crate::inliers::{Band, Inliers};
 use crate::integrability;
 use crate::lmeds::{self, Fit, FitError};
 use crate::location::{self, Location};
 use crate::orientation::{self, Orientation, RANK_THRESHOLD};
+use crate::orthogonal::tilts_given;
 use crate::tilt::pentland::{self, Tilts};
 use heapless::Vec;
 
 /// A t value of the form along the colors' thinnest direction below this is no evidence of any thickness.
 const SMALLEST_THIN_AXIS_T: f64 = 5.0;
+
+/// What to do where eqs. 25 have no root (section 3.3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SlantFallback {
+    /// [`Outcome::NoConsistentSlants`].
+    Refuse,
+    /// The slants that satisfy eqs. 24 best.
+    #[default]
+    LeastSquares,
+    /// The slants that make (15) smallest among those that eqs. 24 do not rule out:
+    /// [`tilts_given`](crate::orthogonal::tilts_given) with its defaults.
+    TiltIntegrability,
+}
 
 /// What to do, with the defaults of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +39,8 @@ pub struct Params {
     pub saturation: Option<f32>,
     /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
     pub rank_threshold: f64,
-    /// Where eqs. 25 have no root, answer with the slants that satisfy eqs. 24 best. Default `true`.
-    pub slant_fallback: bool,
+    /// Where the slants come from when eqs. 25 have no root. Default [`SlantFallback::LeastSquares`].
+    pub fallback: SlantFallback,
 }
 
 impl Default for Params {
@@ -34,7 +49,7 @@ impl Default for Params {
             lmeds: lmeds::Params::default(),
             saturation: None,
             rank_threshold: RANK_THRESHOLD,
-            slant_fallback: true,
+            fallback: SlantFallback::LeastSquares,
         }
     }
 }
@@ -77,6 +92,8 @@ pub enum SlantSource {
     Root,
     /// There is no root: least squares over eqs. 24.
     LeastSquares,
+    /// There is no root: the least integral (15) that eqs. 24 allow.
+    TiltIntegrability,
 }
 
 /// Slants that are consistent with the tilts, and how integrable their normals are.
@@ -199,7 +216,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let Some(Tilts { tilts, .. }) = solution.tilts else { return Ok(solution) };
 
     solution.outcome = Outcome::NoConsistentSlants;
-    solution.choice = choose(image, &inliers, &ellipsoid, tilts, params);
+    solution.choice = choose(image, &inliers, &ellipsoid, tilts, params, workspace);
     match &solution.choice {
         None => {}
         Some(choice) if choice.orientation.rank < 3 => solution.outcome = Outcome::RankDeficient,
@@ -215,6 +232,7 @@ fn choose(
     ellipsoid: &Ellipsoid,
     tilts: [f64; 3],
     params: &Params,
+    workspace: &mut [f32],
 ) -> Option<Choice> {
     let orient = |slants| {
         Orientation::new(orientation::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
@@ -242,16 +260,23 @@ fn choose(
         let orientation = orient(slants);
         return Some(Choice { slants, source: SlantSource::Root, candidates, chosen, orientation });
     }
-    if !params.slant_fallback {
-        return None;
-    }
-    let nearest = constrained_slant::least_squares(tilts, ellipsoid.cosines);
-    let orientation = orient(nearest.slants);
-    Some(Choice {
-        slants: nearest.slants,
-        source: SlantSource::LeastSquares,
-        candidates,
-        chosen: 0,
-        orientation,
-    })
+    let (slants, source) = match params.fallback {
+        SlantFallback::Refuse => return None,
+        SlantFallback::LeastSquares => {
+            (constrained_slant::least_squares(tilts, ellipsoid.cosines).slants, SlantSource::LeastSquares)
+        }
+        SlantFallback::TiltIntegrability => {
+            let cells = tilts_given::Params::default();
+            let room = tilts_given::workspace_len(image.width() * image.height(), cells.sample_cells);
+            let room = room.min(workspace.len());
+            let workspace = workspace.get_mut(..room)?;
+            let bits = |window: &Window| inliers.bits(window);
+            let (norms, cosines) = (ellipsoid.norms, ellipsoid.cosines);
+            let found =
+                tilts_given::search(image, bits, norms, cosines, tilts, cells.slack, workspace).ok()?;
+            (found.slants, SlantSource::TiltIntegrability)
+        }
+    };
+    let orientation = orient(slants);
+    Some(Choice { slants, source, candidates, chosen: 0, orientation })
 }
