@@ -311,7 +311,7 @@ fn reweighted(image: &Image, inliers: &Inliers, scale: f64, confidence: f64) -> 
 }
 
 /// 2^-k for the k that brings `largest` into [1, 2).
-fn reciprocal_power_of_two(largest: f32) -> f64 {
+pub(crate) fn reciprocal_power_of_two(largest: f32) -> f64 {
     libm::ldexp(1.0, -libm::ilogbf(largest))
 }
 

@@ -9,6 +9,7 @@ use crate::lmeds::{self, Fit, FitError};
 use crate::location::{self, Location};
 use crate::orientation::{self, Orientation, RANK_THRESHOLD};
 use crate::orthogonal::tilts_given;
+use crate::rank::{self, Rank};
 use crate::tilt::pentland::{self, Tilts};
 use heapless::Vec;
 
@@ -133,6 +134,8 @@ pub struct Solution {
     pub census: Census,
     /// The root mean square of the colors along their principal axes, descending, in pixel values.
     pub color_deviations: [f64; 3],
+    /// The ranks of colors and normals, of the inliers where there is a fit; `None` where there are no usable pixels.
+    pub rank: Option<Rank>,
     /// The regression; `None` where the colors do not determine C.
     pub fit: Option<Fit>,
     /// The location of the norms of the normals.
@@ -177,6 +180,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         outcome: Outcome::RankDeficient,
         census: usable.count(image),
         color_deviations: [0.0; 3],
+        rank: None,
         fit: None,
         norm_location: None,
         inliers: Inliers::none(usable),
@@ -189,7 +193,8 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let fit = match lmeds::fit(image, usable, &params.lmeds, workspace) {
         Ok(fit) => fit,
         Err(FitError::RankDeficient { color_deviations }) => {
-            return Ok(Solution { color_deviations, ..solution });
+            let rank = rank::rank(image, |window| usable.bits(window), None);
+            return Ok(Solution { color_deviations, rank, ..solution });
         }
         Err(error) => return Err(error),
     };
@@ -197,13 +202,20 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     solution.color_deviations = fit.color_deviations;
     solution.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
     solution.inlier_count = fit.inliers;
-    if fit.thin_axis_t.abs() < SMALLEST_THIN_AXIS_T {
+    let bits = |window: &Window| solution.inliers.bits(window);
+    solution.rank = rank::rank(image, bits, Some((fit.z(), fit.residual_deviation)));
+    let is_thin = solution.rank.is_some_and(|rank| rank.colors < 3);
+    if is_thin || fit.thin_axis_t.abs() < SMALLEST_THIN_AXIS_T {
         return Ok(solution);
     }
 
     solution.outcome = Outcome::NotPositiveDefinite;
     let Ok(ellipsoid) = ellipsoid::decompose(&fit.z()) else { return Ok(solution) };
     solution.ellipsoid = Some(ellipsoid);
+    if solution.rank.is_some_and(|rank| !rank.is_full()) {
+        solution.outcome = Outcome::RankDeficient;
+        return Ok(solution);
+    }
     solution.norm_location = location::norms(image, &solution.inliers, &fit.z(), workspace);
     if let Some(norms) = solution.norm_location {
         solution.inliers.norm = Band::norm(fit.z(), &norms, params.lmeds.rejection);

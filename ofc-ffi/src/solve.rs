@@ -118,6 +118,7 @@ impl From<&Solution> for ofc_solution {
             outcome,
             census,
             color_deviations,
+            rank: _,
             fit,
             norm_location,
             inliers,

@@ -132,6 +132,20 @@ impl Scene {
         self
     }
 
+    /// Puts the surface of another scene of the same size in front of this one.
+    #[must_use]
+    pub fn behind(mut self, other: &Self) -> Self {
+        for (at, &mask) in other.mask.iter().enumerate() {
+            if mask > 0 {
+                self.colors[at] = other.colors[at];
+                self.normals[at] = other.normals[at];
+                self.mask[at] = mask;
+            }
+        }
+        self.store(self.sample);
+        self
+    }
+
     /// Rounds to 8 bits.
     #[must_use]
     pub fn quantized(mut self) -> Self {
@@ -176,6 +190,11 @@ pub fn cap(radius: f64, rim: f64) -> impl Fn(f64, f64) -> Option<f64> {
         let square = x * x + y * y;
         (square <= rim * rim && square < radius * radius).then(|| (radius * radius - square).sqrt())
     }
+}
+
+/// The same surface with its middle at (x, y).
+pub fn moved(depth: impl Fn(f64, f64) -> Option<f64>, to: [f64; 2]) -> impl Fn(f64, f64) -> Option<f64> {
+    move |x, y| depth(x - to[0], y - to[1])
 }
 
 /// A smooth closed bump without symmetry: a lopsided dome with a second, smaller one on its flank.
