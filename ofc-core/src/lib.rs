@@ -9,6 +9,7 @@
 extern crate std;
 
 pub mod cells;
+pub mod check;
 pub mod constrained_slant;
 pub mod ellipsoid;
 pub mod image;
