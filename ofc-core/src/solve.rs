@@ -203,7 +203,9 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     solution.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
     solution.inlier_count = fit.inliers;
     let bits = |window: &Window| solution.inliers.bits(window);
-    solution.rank = rank::rank(image, bits, Some((fit.z(), fit.residual_deviation)));
+    // Outliers that least squares keeps are no noise: the robust dispersion leaves them out.
+    let deviation = fit.residual_deviation.min(fit.dispersion);
+    solution.rank = rank::rank(image, bits, Some((fit.z(), deviation)));
     let is_thin = solution.rank.is_some_and(|rank| rank.colors < 3);
     if is_thin || fit.thin_axis_t.abs() < SMALLEST_THIN_AXIS_T {
         return Ok(solution);
