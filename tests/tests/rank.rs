@@ -1,6 +1,6 @@
 //! Effective ranks of rendered scenes that lack something, of complete ones, and of the photographs.
 
-use ofc_core::image::{Image, Usable};
+use ofc_core::image::{Image, Order, Sample, Usable};
 use ofc_core::inliers::Inliers;
 use ofc_core::lmeds;
 use ofc_core::rank::{Rank, rank};
@@ -93,6 +93,26 @@ fn photographs_are_what_they_are() {
     let Some(groove) = photographs::load("gelsight_groove_rank2") else { return };
     let rank = ranks("groove", &groove.image());
     assert!(!rank.is_full() && rank.normals == Some(2));
+}
+
+/// Every press of a ball, inside the radius that is certainly in contact.
+#[test]
+fn presses_have_rank_three() {
+    let Some(folder) = photographs::directory().map(|data| data.join("gelsight_presses")) else { return };
+    let table = std::fs::read_to_string(folder.join("presses.csv")).expect("presses.csv");
+    for line in table.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [x, y, _, radius] = [1, 2, 3, 4].map(|i| fields[i].parse::<f64>().expect("a number"));
+        let (width, height, rgb) = photographs::read_png(&folder.join(format!("{}.png", fields[0])), 3);
+        let inside = |i: usize| (i % width) as f64 - x;
+        let mask: Vec<u8> = (0..width * height)
+            .map(|i| if inside(i).hypot((i / width) as f64 - y) <= radius { 255 } else { 0 })
+            .collect();
+        let image = Image::interleaved(&rgb, width, height, width * 3, Sample::U8, Order::Rgb)
+            .and_then(|image| image.with_mask(&mask, width))
+            .expect("sizes agree");
+        assert!(ranks(fields[0], &image).is_full(), "{line}");
+    }
 }
 
 #[test]
