@@ -75,7 +75,7 @@ impl Transformation {
 /// What chose between the twins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TwinChoice {
-    /// No tilts were given: the convex one, for which n1_x + n2_y is positive on the whole.
+    /// No tilts were given: the convex one, for which `n1_x + n2_y` is positive on the whole.
     Convex,
     /// The tilts of the rows of F that are nearer to those given.
     Tilts,
@@ -162,7 +162,7 @@ impl<'a, 'p, S: Fn(&Window) -> u64> Problem<'a, 'p, S> {
         })
     }
 
-    /// From 1 where n1_x + n2_y is positive everywhere to -1 where it is negative everywhere.
+    /// From 1 where `n1_x + n2_y` is positive everywhere to -1 where it is negative everywhere.
     fn convexity(&self, f_inverse: &Mat3) -> f64 {
         let (mut sum, mut absolute) = (0.0, 0.0);
         for_each_cell(self.image, &self.inliers, f_inverse, |_, n_x, n_y| {

@@ -157,7 +157,9 @@ impl Scene {
         self.sample = sample;
         self.bytes = match sample {
             Sample::U8 => {
-                self.colors.iter().flatten().map(|value| value.round().clamp(0.0, 255.0) as u8).collect()
+                // Negative values become zero, as `as` has it.
+                #[allow(clippy::cast_sign_loss)]
+                self.colors.iter().flatten().map(|value| value.round() as u8).collect()
             }
             _ => self.colors.iter().flatten().flat_map(|value| (*value as f32).to_ne_bytes()).collect(),
         };
@@ -203,7 +205,7 @@ pub fn lopsided(size: f64) -> impl Fn(f64, f64) -> Option<f64> {
         let (u, v) = (x / size, y / size);
         let dome = (1.0 - 0.9 * u * u - 0.3 * u * v - 1.2 * v * v) * (1.0 + 0.25 * u - 0.2 * v);
         let flank = 0.12 * (-((u - 0.35).powi(2) + (v + 0.3).powi(2)) / 0.08).exp();
-        (u * u + v * v <= 0.8).then(|| 0.28 * size * (dome + flank))
+        (u * u + v * v <= 0.8).then_some(0.28 * size * (dome + flank))
     }
 }
 

@@ -29,6 +29,8 @@ fn ranks(name: &str, image: &Image) -> Rank {
     rank
 }
 
+type Make<'a> = &'a dyn Fn() -> Scene;
+
 /// Without noise, rounded, and with noise before it.
 fn variants(make: impl Fn() -> Scene, noises: &[f64]) -> Vec<(String, Scene)> {
     let mut all = vec![("exact".into(), make()), ("rounded".into(), make().quantized())];
@@ -48,7 +50,7 @@ fn cylinder(x: f64, y: f64) -> Option<f64> {
 
 #[test]
 fn complete_scenes_have_rank_three() {
-    let makes: [(&str, &dyn Fn() -> Scene, &[f64]); 5] = [
+    let makes: [(&str, Make, &[f64]); 5] = [
         ("30 degree cap", &|| Scene::new(SIZE, SIZE, &CLEAN, cap(128.0, 60.0)), &[0.5, 1.0, 2.0]),
         ("15 degree cap", &|| Scene::new(SIZE, SIZE, &CLEAN, cap(240.0, 60.0)), &[0.5, 1.0, 2.0]),
         ("lopsided", &|| Scene::new(SIZE, SIZE, &CLEAN, lopsided(64.0)), &[0.5, 1.0, 2.0]),
@@ -67,7 +69,7 @@ fn complete_scenes_have_rank_three() {
 fn what_lacks_a_dimension_is_found_and_named() {
     let gray: Vec<Light> = CLEAN.iter().map(|&(angles, _)| (angles, [100.0; 3])).collect();
     let plane = |x: f64, y: f64| Some(0.2 * x + 0.1 * y);
-    let makes: [(&str, &dyn Fn() -> Scene, u32, Option<u32>); 6] = [
+    let makes: [(&str, Make, u32, Option<u32>); 6] = [
         ("cylinder", &|| Scene::new(SIZE, SIZE, &CLEAN, cylinder), 2, Some(2)),
         ("cylinder, paper's lights", &|| Scene::new(SIZE, SIZE, &PAPER, cylinder), 2, Some(2)),
         ("two lights", &|| Scene::new(SIZE, SIZE, &CLEAN[..2], lopsided(64.0)), 2, Some(3)),

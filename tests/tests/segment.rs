@@ -44,7 +44,7 @@ fn scores(labels: &[u16], truth: &[u8], count: u8) -> Vec<(u16, f64, f64)> {
             let inside = |label: u16| {
                 labels.iter().zip(truth).filter(|&(&l, &t)| t == region && l == label).count() as f64
             };
-            let size = truth.iter().filter(|&&t| t == region).count() as f64;
+            let size = labels.iter().zip(truth).filter(|&(_, &t)| t == region).count() as f64;
             let label = (1..=16).max_by(|&a, &b| inside(a).total_cmp(&inside(b))).unwrap_or(0);
             let all = labels.iter().filter(|&&l| l == label).count() as f64;
             (label, inside(label) / size, 1.0 - inside(label) / all)

@@ -41,7 +41,7 @@ pub(crate) fn polish(
         let reached = if length > 0.0 { at(step) } else { f64::INFINITY };
         used += ROUND;
         if reached < before {
-            h = (2.0 * length).clamp(h / 16.0, h);
+            h = (2.0 * length).max(h / 16.0).min(h);
         } else if before >= here {
             h *= 0.25;
         }

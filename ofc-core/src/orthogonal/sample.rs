@@ -8,7 +8,7 @@ use crate::image::{Image, Window, for_each_bit};
 use crate::integrability::SMALLEST_N3;
 use crate::mat3::{self, Mat3};
 
-/// Visits every cell of four inliers with the mean over it of v = `transform` rho, and its differences v_x and v_y (y
+/// Visits every cell of four inliers with the mean over it of v = `transform` rho, and its differences `v_x` and `v_y` (y
 /// up), a pixel apart.
 pub(crate) fn for_each_cell(
     image: &Image,
@@ -42,7 +42,7 @@ fn subtract([a1, a2, a3]: [f64; 3], [b1, b2, b3]: [f64; 3]) -> [f64; 3] {
 /// `f32` of workspace for one cell.
 pub(crate) const CELL: usize = 9;
 
-/// The cells that a search looks at: v, v x v_x and v x v_y of each.
+/// The cells that a search looks at: `v`, `v x v_x` and `v x v_y` of each.
 pub(crate) struct Sample<'w> {
     cells: &'w [[f32; CELL]],
 }

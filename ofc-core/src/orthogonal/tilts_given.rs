@@ -114,7 +114,8 @@ pub(crate) fn search(
         Sample::gather(image, &inliers, &IDENTITY, cells, workspace).ok_or(OrthogonalError::NoCells)?;
     let problem = Problem { sample, norms, cosines, tilts, residual_limit: nearest.residual_rms + slack };
     let mut best: Option<TiltIntegrability> = None;
-    for start in problem.starts(&nearest) {
+    // By reference: dropping the owning iterator could panic, as far as the compiler can tell.
+    for &start in &problem.starts(&nearest) {
         let slants = problem.descend(start);
         let f_inverse = problem.f_inverse(slants);
         let Some(integral) = integrability::integral(image, &inliers, &f_inverse) else { continue };
