@@ -110,6 +110,9 @@
 // The alignment in bytes that every workspace must have; what malloc returns has it.
 #define OFC_WORKSPACE_ALIGNMENT 8
 
+// Lights at most.
+#define OFC_MAX_LIGHTS 32
+
 // No more slants than this are consistent with three tilts and three cosines.
 #define OFC_MAX_CANDIDATES 8
 
@@ -124,6 +127,15 @@
 
 // There is no root: the least integral (15) that eqs. 24 allow.
 #define OFC_SLANTS_TILT_INTEGRABILITY 3
+
+// There is no root: Pentland's slants, eq. 22.
+#define OFC_SLANTS_PENTLAND 4
+
+// There is no root: Lee and Rosenfeld's slants, eq. 23.
+#define OFC_SLANTS_LEE_ROSENFELD 5
+
+// There is no root: Zheng and Chellappa's slants.
+#define OFC_SLANTS_ZHENG_CHELLAPPA 6
 
 // Success.
 #define OFC_STATUS_OK 0
@@ -439,6 +451,61 @@ typedef struct ofc_lmeds_params {
     uint32_t reserved[5];
 } ofc_lmeds_params;
 
+// What ofc_render() adds to eq. 5. Set by ofc_render_params_default().
+typedef struct ofc_render_params {
+    // Colors are scaled by one factor so that the largest modulus is this, in [0, 1e30]; 0 for no scaling. Default 255.
+    double peak;
+    // Standard deviation of Gaussian noise in pixel values, added after scaling, in [0, 1e30]. Default 0.
+    double noise;
+    // Fixes the noise. Default 0.
+    uint64_t seed;
+    // 1: the surface casts shadows on itself; 0: only what faces away from a light is dark. Default 1.
+    int32_t cast_shadows;
+    // Must be zero.
+    uint32_t reserved[5];
+} ofc_render_params;
+
+// A depth map in the caller's memory, row 0 at the top, depth growing toward the camera. Initialise all of it: fields
+// not set must be zero.
+typedef struct ofc_depth_map {
+    // A depth a pixel, in the unit of pixel_pitch; finite inside the mask.
+    const float *depth;
+    // Pixels in a row, at least 1.
+    int32_t width;
+    // Rows, at least 1.
+    int32_t height;
+    // Bytes from a row to the next, a multiple of 4.
+    size_t row_stride_bytes;
+    // Distance between neighbouring pixels, in [1e-30, 1e30].
+    double pixel_pitch;
+    // NULL, or a byte a pixel: there is no surface where it is zero.
+    const uint8_t *mask;
+    // Bytes from a row of the mask to the next; without a mask it does not matter.
+    size_t mask_stride_bytes;
+} ofc_depth_map;
+
+// L distant lights.
+typedef struct ofc_lights {
+    // A, L x 3 row-major: unit vectors toward the lights.
+    const double *directions;
+    // B, 3 x L row-major: row c holds what each light gives to channel c of a surface that faces it, in [0, 1e30].
+    const double *colors;
+    // L, 1 to OFC_MAX_LIGHTS.
+    int32_t count;
+    // Must be zero.
+    uint32_t reserved;
+} ofc_lights;
+
+// What was rendered.
+typedef struct ofc_rendering {
+    // Largest modulus of a color before scaling; 0 when all is dark.
+    double largest;
+    // The factor applied.
+    double scale;
+    // The picture's true F where all lights are seen: scale times B A, row-major.
+    double f[9];
+} ofc_rendering;
+
 // What ofc_solve() does. Set by ofc_solve_params_default().
 typedef struct ofc_solve_params {
     // The regression in color space, with the seed and the saturation level.
@@ -446,11 +513,14 @@ typedef struct ofc_solve_params {
     // Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
     double rank_threshold;
     // Where eqs. 25 have no root, 0: refuse; 1: take the slants that satisfy eqs. 24 best; 2: take those that make the
-    // integral (15) smallest among the ones that eqs. 24 do not rule out. Default 1.
+    // integral (15) smallest among the ones that eqs. 24 do not rule out; 3, 4, 5: Pentland's, Lee and Rosenfeld's,
+    // Zheng and Chellappa's. Default 1.
     int32_t slant_fallback;
     // Must be zero.
     uint32_t reserved[7];
 } ofc_solve_params;
+
+
 
 #ifdef __cplusplus
 extern "C" {
@@ -653,6 +723,45 @@ ofc_status ofc_inliers_mark(const struct ofc_image *image,
 // Reference: section 2.1, eqs. 9 and 18.
 ofc_status ofc_ellipsoid_decompose(const double *coefficients,
                                    struct ofc_ellipsoid *ellipsoid);
+
+// Sets every field to its default.
+//
+// @param params  Output.
+// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+ofc_status ofc_render_params_default(struct ofc_render_params *params);
+
+// Renders a depth map under coloured lights: eq. 5 with attached and cast shadows, scaling, noise and quantisation.
+//
+// A pixel sees light i if a_i . n > 0 and, with cast shadows, no part of the surface is in the way. Normals are central
+// differences of the depth, one-sided at the borders of the picture and the mask.
+//
+// @param depth   The surface.
+// @param lights  The lights.
+// @param params  See the struct.
+// @param pixels  Output: the picture, depth->width x depth->height, black outside the mask; integers are rounded and
+//                limited to their range.
+// @param format  An OFC_PIXEL_* format that is not planar.
+// @param pixels_stride_bytes  Bytes from a row to the next.
+// @param seen    Output: a word a pixel, bit i set where the surface sees light i; may be NULL.
+// @param seen_stride_bytes  Bytes from a row to the next, a multiple of 4.
+// @param normals Output: (x, y, z) floats a pixel, zero outside the mask; may be NULL.
+// @param normals_stride_bytes  Bytes from a row to the next, a multiple of 4.
+// @param rendering  Output: scale and true F.
+// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER for a depth, direction, color or parameter out of its range; the
+//         status of an invalid argument.
+//
+// Reference: sections 1.1 and 4, eqs. 1-7.
+ofc_status ofc_render(const struct ofc_depth_map *depth,
+                      const struct ofc_lights *lights,
+                      const struct ofc_render_params *params,
+                      void *pixels,
+                      ofc_pixel_format format,
+                      size_t pixels_stride_bytes,
+                      uint32_t *seen,
+                      size_t seen_stride_bytes,
+                      float *normals,
+                      size_t normals_stride_bytes,
+                      struct ofc_rendering *rendering);
 
 // All slants in [0, pi/2] that are consistent with three tilts and the angles between the rows of F: every solution of
 // eqs. 24, on all eight branches of eqs. 25.

@@ -66,7 +66,7 @@ impl Order {
         }
     }
 
-    const fn positions(self) -> [usize; 3] {
+    pub(crate) const fn positions(self) -> [usize; 3] {
         match self {
             Self::Rgb | Self::Rgba => [0, 1, 2],
             Self::Bgr | Self::Bgra => [2, 1, 0],
@@ -135,8 +135,13 @@ impl<'a> Mask<'a> {
         Ok(Self { bytes, row_stride })
     }
 
+    /// Whether the pixel at `(x, y)`, which must be within the width, is selected.
+    pub(crate) fn contains(&self, x: usize, y: usize) -> bool {
+        self.bytes.get(y * self.row_stride + x).is_some_and(|&byte| byte != 0)
+    }
+
     /// One bit a pixel for the `len` pixels from `(x, y)` on, set where the mask is not zero.
-    fn bits(&self, x: usize, y: usize, len: usize) -> u64 {
+    pub(crate) fn bits(&self, x: usize, y: usize, len: usize) -> u64 {
         let row = self.bytes.get(y * self.row_stride + x..).unwrap_or_default();
         let mut bits = 0;
         for (i, &byte) in row.iter().take(len).enumerate() {
@@ -290,7 +295,7 @@ impl<'a> Image<'a> {
 
 /// Every `stride` bytes one sample, as many as `out` holds.
 fn read_samples<const N: usize>(bytes: &[u8], stride: usize, out: &mut [f32], load: impl Fn([u8; N]) -> f32) {
-    for (pixel, out) in bytes.chunks(stride).zip(out) {
+    for (pixel, out) in bytes.chunks(stride.max(1)).zip(out) {
         if let Some(&sample) = pixel.first_chunk::<N>() {
             *out = load(sample);
         }

@@ -9,8 +9,10 @@
 extern crate std;
 
 pub mod cells;
+pub mod channel_maxima;
 pub mod check;
 pub mod constrained_slant;
+pub mod differences;
 pub mod ellipsoid;
 pub mod image;
 pub mod inliers;
@@ -23,9 +25,11 @@ pub mod orientation;
 pub mod orthogonal;
 pub mod rank;
 pub mod regression;
+pub mod render;
 pub mod rng;
 pub mod segment;
 pub mod select;
+pub mod slant;
 pub mod solve;
 pub mod student_t;
 pub mod tilt;

@@ -98,6 +98,7 @@ impl Params {
 ///
 /// `None` when a parameter is out of range (see [`Params`]) or the answer is above [`MAX_SUBSETS`].
 #[must_use]
+#[allow(clippy::cast_sign_loss, reason = "at least 1")]
 pub fn subset_count(confidence: f64, outlier_share: f64, min_subsets: u32) -> Option<u32> {
     let in_range = confidence > 0.0
         && confidence < 1.0

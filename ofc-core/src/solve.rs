@@ -1,5 +1,9 @@
 //! The whole pipeline of section 3.4 over one workspace.
 
+mod fallback;
+
+pub use fallback::SlantFallback;
+
 use crate::constrained_slant::{self, MAX_CANDIDATES};
 use crate::ellipsoid::{self, Ellipsoid};
 use crate::image::{Census, Image, Usable, Window};
@@ -8,27 +12,12 @@ use crate::integrability;
 use crate::lmeds::{self, Fit, FitError};
 use crate::location::{self, Location};
 use crate::orientation::{self, Orientation, RANK_THRESHOLD};
-use crate::orthogonal::tilts_given;
 use crate::rank::{self, Rank};
 use crate::tilt::pentland::{self, Tilts};
 use heapless::Vec;
 
 /// A t value of the form along the colors' thinnest direction below this is no evidence of any thickness.
 const SMALLEST_THIN_AXIS_T: f64 = 5.0;
-
-/// What to do where eqs. 25 have no root (section 3.3).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum SlantFallback {
-    /// [`Outcome::NoConsistentSlants`].
-    Refuse,
-    /// The slants that satisfy eqs. 24 best.
-    #[default]
-    LeastSquares,
-    /// The slants that make (15) smallest among those that eqs. 24 do not rule out:
-    /// [`tilts_given`](crate::orthogonal::tilts_given) with its defaults.
-    TiltIntegrability,
-}
 
 /// What to do, with the defaults of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +84,12 @@ pub enum SlantSource {
     LeastSquares,
     /// There is no root: the least integral (15) that eqs. 24 allow.
     TiltIntegrability,
+    /// There is no root: Pentland's slants, eq. 22.
+    Pentland,
+    /// There is no root: Lee and Rosenfeld's slants, eq. 23.
+    LeeRosenfeld,
+    /// There is no root: Zheng and Chellappa's slants.
+    ZhengChellappa,
 }
 
 /// Slants that are consistent with the tilts, and how integrable their normals are.
@@ -274,23 +269,7 @@ fn choose(
         let orientation = orient(slants);
         return Some(Choice { slants, source: SlantSource::Root, candidates, chosen, orientation });
     }
-    let (slants, source) = match params.fallback {
-        SlantFallback::Refuse => return None,
-        SlantFallback::LeastSquares => {
-            (constrained_slant::least_squares(tilts, ellipsoid.cosines).slants, SlantSource::LeastSquares)
-        }
-        SlantFallback::TiltIntegrability => {
-            let cells = tilts_given::Params::default();
-            let room = tilts_given::workspace_len(image.width() * image.height(), cells.sample_cells);
-            let room = room.min(workspace.len());
-            let workspace = workspace.get_mut(..room)?;
-            let bits = |window: &Window| inliers.bits(window);
-            let (norms, cosines) = (ellipsoid.norms, ellipsoid.cosines);
-            let found =
-                tilts_given::search(image, bits, norms, cosines, tilts, cells.slack, workspace).ok()?;
-            (found.slants, SlantSource::TiltIntegrability)
-        }
-    };
+    let (slants, source) = fallback::slants(params.fallback, image, inliers, ellipsoid, tilts, workspace)?;
     let orientation = orient(slants);
     Some(Choice { slants, source, candidates, chosen: 0, orientation })
 }

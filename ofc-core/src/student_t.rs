@@ -57,7 +57,7 @@ pub fn quantile(confidence: f64, degrees: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The regularised incomplete beta function I_x(a, b), given x and 1 - x apart so that neither loses its digits.
+/// The regularised incomplete beta function `I_x(a, b)`, given x and 1 - x apart so that neither loses its digits.
 fn incomplete_beta(a: f64, b: f64, x: f64, one_minus_x: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;

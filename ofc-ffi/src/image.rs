@@ -75,7 +75,7 @@ pub struct ofc_image {
 unsafe impl Plain for ofc_image {}
 
 /// A checked picture and the bytes it lies in.
-pub struct CheckedImage<'a> {
+pub(crate) struct CheckedImage<'a> {
     /// The view.
     pub view: Image<'a>,
     /// The struct, the planes and the mask.
@@ -104,12 +104,20 @@ fn layout(format: ofc_pixel_format) -> Result<(Sample, Layout), ofc_status> {
     Ok((sample, layout))
 }
 
+/// The layout of a format that is not planar.
+pub(crate) fn interleaved_layout(format: ofc_pixel_format) -> Result<(Sample, Order), ofc_status> {
+    match layout(format)? {
+        (sample, Layout::Interleaved(order)) => Ok((sample, order)),
+        (_, Layout::Planes) => Err(OFC_STATUS_UNKNOWN_FORMAT),
+    }
+}
+
 fn checked_span(width: usize, height: usize, pixel_bytes: usize, stride: usize) -> Result<usize, ofc_status> {
     span(width, height, pixel_bytes, stride).map_err(of_image_error)
 }
 
 /// Width and height as sizes, 0 for what is negative.
-pub fn dimension(size: i32) -> usize {
+pub(crate) fn dimension(size: i32) -> usize {
     usize::try_from(size).unwrap_or(0)
 }
 
@@ -117,7 +125,7 @@ pub fn dimension(size: i32) -> usize {
 ///
 /// # Safety
 /// The pixels and the mask can be read and are not written during the call.
-pub unsafe fn image<'a>(pointer: *const ofc_image) -> Result<CheckedImage<'a>, ofc_status> {
+pub(crate) unsafe fn image<'a>(pointer: *const ofc_image) -> Result<CheckedImage<'a>, ofc_status> {
     let (image, own) = input(pointer)?;
     if image.reserved != 0 {
         return Err(OFC_STATUS_RESERVED_NOT_ZERO);

@@ -26,7 +26,7 @@ unsafe impl Plain for f64 {}
 // SAFETY: as above.
 unsafe impl Plain for i32 {}
 // SAFETY: as above.
-unsafe impl Plain for usize {}
+unsafe impl Plain for u32 {}
 
 /// The bytes a call reads or writes, to be compared with the others of the same call.
 #[derive(Clone, Copy)]
@@ -36,6 +36,14 @@ pub struct Extent {
 }
 
 impl Extent {
+    /// No bytes: what an output that the caller does not want occupies.
+    pub const NOTHING: Self = Self { start: 0, bytes: 0 };
+
+    /// How many bytes.
+    pub const fn bytes(self) -> usize {
+        self.bytes
+    }
+
     const fn overlaps(self, other: Self) -> bool {
         self.start < other.start.saturating_add(other.bytes)
             && other.start < self.start.saturating_add(self.bytes)
@@ -52,7 +60,7 @@ pub fn extent<T>(pointer: *const T, count: usize) -> Result<Extent, ofc_status> 
     }
     let start = pointer.addr();
     match count.checked_mul(size_of::<T>()) {
-        Some(bytes) if bytes <= isize::MAX as usize && start.checked_add(bytes).is_some() => {
+        Some(bytes) if isize::try_from(bytes).is_ok() && start.checked_add(bytes).is_some() => {
             Ok(Extent { start, bytes })
         }
         _ => Err(OFC_STATUS_TOO_LARGE),

@@ -15,12 +15,12 @@ use ofc_core::inliers::{Band, Inliers};
 use ofc_core::{ellipsoid, lmeds, location};
 
 /// Bytes of so many floats, 0 where there are none or too many.
-pub fn float_bytes(count: usize) -> usize {
-    count.checked_mul(size_of::<f32>()).filter(|&bytes| bytes <= isize::MAX as usize).unwrap_or(0)
+pub(crate) fn float_bytes(count: usize) -> usize {
+    count.checked_mul(size_of::<f32>()).filter(|&bytes| isize::try_from(bytes).is_ok()).unwrap_or(0)
 }
 
 /// Pixels of a picture, 0 where there are none or too many.
-pub fn pixel_count(width: i32, height: i32) -> usize {
+pub(crate) fn pixel_count(width: i32, height: i32) -> usize {
     dimension(width).checked_mul(dimension(height)).filter(|&pixels| pixels <= MAX_PIXELS).unwrap_or(0)
 }
 
@@ -28,7 +28,7 @@ pub fn pixel_count(width: i32, height: i32) -> usize {
 ///
 /// # Safety
 /// As [`output_slice`]; the extent comes from [`workspace`].
-pub unsafe fn floats<'a>(pointer: *mut c_void, bytes: usize) -> &'a mut [f32] {
+pub(crate) unsafe fn floats<'a>(pointer: *mut c_void, bytes: usize) -> &'a mut [f32] {
     // SAFETY: eight-byte alignment is enough for floats; `bytes` have been checked.
     unsafe { output_slice(pointer.cast::<f32>(), bytes / size_of::<f32>()) }
 }
@@ -262,11 +262,8 @@ pub unsafe extern "C" fn ofc_inliers_mark(
         let mask_extent = extent(mask.cast_const(), pixels)?;
         let count = if count.is_null() { None } else { Some(Out::new(count)?) };
         let [a, b, c, d, e] = picture.extents;
-        let read = [a, b, c, d, e, test_extent];
-        match &count {
-            Some(count) => disjoint(&[mask_extent, count.extent], &read)?,
-            None => disjoint(&[mask_extent], &read)?,
-        }
+        let count_extent = count.as_ref().map_or(Extent::NOTHING, |count| count.extent);
+        disjoint(&[mask_extent, count_extent], &[a, b, c, d, e, test_extent])?;
         // SAFETY: checked and disjoint.
         test.mark(&picture.view, unsafe { output_slice(mask, pixels) });
         if let Some(count) = count {
@@ -278,7 +275,7 @@ pub unsafe extern "C" fn ofc_inliers_mark(
 }
 
 /// The test at `inliers`, or every usable pixel of the picture where it is NULL, and the bytes it was read from.
-pub fn accepted_by(
+pub(crate) fn accepted_by(
     inliers: *const ofc_inliers,
     picture: &crate::image::CheckedImage,
 ) -> Result<(Inliers, Extent), ofc_status> {

@@ -1,7 +1,7 @@
 //! The whole pipeline.
 
 use crate::image::{image, ofc_image};
-use crate::pointers::{Out, Plain, disjoint, extent, input, output_slice, workspace};
+use crate::pointers::{Extent, Out, Plain, disjoint, extent, input, output_slice, workspace};
 use crate::regression::{float_bytes, floats, pixel_count};
 use crate::slants::OFC_MAX_CANDIDATES;
 use crate::status::{
@@ -25,6 +25,12 @@ pub const OFC_SLANTS_ROOT: i32 = 1;
 pub const OFC_SLANTS_LEAST_SQUARES: i32 = 2;
 /// There is no root: the least integral (15) that eqs. 24 allow.
 pub const OFC_SLANTS_TILT_INTEGRABILITY: i32 = 3;
+/// There is no root: Pentland's slants, eq. 22.
+pub const OFC_SLANTS_PENTLAND: i32 = 4;
+/// There is no root: Lee and Rosenfeld's slants, eq. 23.
+pub const OFC_SLANTS_LEE_ROSENFELD: i32 = 5;
+/// There is no root: Zheng and Chellappa's slants.
+pub const OFC_SLANTS_ZHENG_CHELLAPPA: i32 = 6;
 
 /// What ofc_solve() does. Set by ofc_solve_params_default().
 #[repr(C)]
@@ -35,7 +41,8 @@ pub struct ofc_solve_params {
     /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
     pub rank_threshold: f64,
     /// Where eqs. 25 have no root, 0: refuse; 1: take the slants that satisfy eqs. 24 best; 2: take those that make the
-    /// integral (15) smallest among the ones that eqs. 24 do not rule out. Default 1.
+    /// integral (15) smallest among the ones that eqs. 24 do not rule out; 3, 4, 5: Pentland's, Lee and Rosenfeld's,
+    /// Zheng and Chellappa's. Default 1.
     pub slant_fallback: i32,
     /// Must be zero.
     pub reserved: [u32; 7],
@@ -98,6 +105,9 @@ impl ofc_solve_params {
             0 => SlantFallback::Refuse,
             1 => SlantFallback::LeastSquares,
             2 => SlantFallback::TiltIntegrability,
+            3 => SlantFallback::PentlandSlant,
+            4 => SlantFallback::LeeRosenfeldSlant,
+            5 => SlantFallback::ZhengChellappaSlant,
             _ => return Err(OFC_STATUS_INVALID_PARAMETER),
         };
         let params = Params { lmeds, saturation, rank_threshold, fallback };
@@ -155,6 +165,9 @@ impl From<&Solution> for ofc_solution {
                 SlantSource::Root => (OFC_SLANTS_ROOT, count(choice.chosen)),
                 SlantSource::LeastSquares => (OFC_SLANTS_LEAST_SQUARES, -1),
                 SlantSource::TiltIntegrability => (OFC_SLANTS_TILT_INTEGRABILITY, -1),
+                SlantSource::Pentland => (OFC_SLANTS_PENTLAND, -1),
+                SlantSource::LeeRosenfeld => (OFC_SLANTS_LEE_ROSENFELD, -1),
+                SlantSource::ZhengChellappa => (OFC_SLANTS_ZHENG_CHELLAPPA, -1),
             };
             result.orientation = choice.orientation.into();
         }
@@ -228,11 +241,9 @@ pub unsafe extern "C" fn ofc_solve(
         let out = Out::new(solution)?;
         let [a, b, c, d, e] = picture.extents;
         let read = [a, b, c, d, e, params_extent];
-        if inlier_mask.is_null() {
-            disjoint(&[scratch, out.extent], &read)?;
-        } else {
-            disjoint(&[scratch, out.extent, extent(inlier_mask.cast_const(), pixels)?], &read)?;
-        }
+        let mask_extent =
+            if inlier_mask.is_null() { Extent::NOTHING } else { extent(inlier_mask.cast_const(), pixels)? };
+        disjoint(&[scratch, out.extent, mask_extent], &read)?;
         // SAFETY: checked and disjoint.
         let found = solve::solve(view, &params, unsafe { floats(workspace, need) }).map_err(of_fit_error)?;
         if !inlier_mask.is_null() {

@@ -90,7 +90,7 @@ pub extern "C" fn ofc_status_message(status: ofc_status) -> *const c_char {
 }
 
 /// The status of a view that could not be made.
-pub const fn of_image_error(error: ImageError) -> ofc_status {
+pub(crate) const fn of_image_error(error: ImageError) -> ofc_status {
     match error {
         ImageError::Empty => OFC_STATUS_EMPTY,
         ImageError::StrideTooSmall => OFC_STATUS_STRIDE_TOO_SMALL,
@@ -99,7 +99,7 @@ pub const fn of_image_error(error: ImageError) -> ofc_status {
 }
 
 /// The status of a fit that could not be made.
-pub const fn of_fit_error(error: FitError) -> ofc_status {
+pub(crate) const fn of_fit_error(error: FitError) -> ofc_status {
     match error {
         FitError::Params => OFC_STATUS_INVALID_PARAMETER,
         FitError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
@@ -111,7 +111,7 @@ pub const fn of_fit_error(error: FitError) -> ofc_status {
 }
 
 /// The status of a pipeline that came so far.
-pub const fn of_outcome(outcome: Outcome) -> ofc_status {
+pub(crate) const fn of_outcome(outcome: Outcome) -> ofc_status {
     match outcome {
         Outcome::Solved => OFC_STATUS_OK,
         Outcome::RankDeficient => OFC_STATUS_RANK_DEFICIENT,
@@ -122,7 +122,7 @@ pub const fn of_outcome(outcome: Outcome) -> ofc_status {
 }
 
 /// The status of a call's body.
-pub fn of(result: Result<ofc_status, ofc_status>) -> ofc_status {
+pub(crate) fn of(result: Result<ofc_status, ofc_status>) -> ofc_status {
     match result {
         Ok(status) | Err(status) => status,
     }

@@ -34,18 +34,18 @@ plain!(
 );
 
 /// A 3x3 matrix of C, row-major.
-pub fn flat(m: &Mat3) -> [f64; 9] {
+pub(crate) fn flat(m: &Mat3) -> [f64; 9] {
     let [[a, b, c], [d, e, f], [g, h, i]] = *m;
     [a, b, c, d, e, f, g, h, i]
 }
 
 /// A 3x3 matrix from C, row-major.
-pub fn unflat([a, b, c, d, e, f, g, h, i]: [f64; 9]) -> Mat3 {
+pub(crate) fn unflat([a, b, c, d, e, f, g, h, i]: [f64; 9]) -> Mat3 {
     [[a, b, c], [d, e, f], [g, h, i]]
 }
 
 /// A number of pixels; pictures hold no more than 2^31 - 1.
-pub fn count(pixels: usize) -> i32 {
+pub(crate) fn count(pixels: usize) -> i32 {
     i32::try_from(pixels).unwrap_or(i32::MAX)
 }
 
@@ -78,7 +78,7 @@ pub struct ofc_lmeds_params {
 
 impl ofc_lmeds_params {
     /// The defaults.
-    pub fn defaults() -> Self {
+    pub(crate) fn defaults() -> Self {
         let lmeds::Params {
             method: _,
             confidence,
@@ -105,7 +105,7 @@ impl ofc_lmeds_params {
     }
 
     /// The core's parameters and the saturation level, if one is set.
-    pub fn check(self) -> Result<(lmeds::Params, Option<f32>), ofc_status> {
+    pub(crate) fn check(self) -> Result<(lmeds::Params, Option<f32>), ofc_status> {
         let Self {
             confidence,
             outlier_share,
@@ -234,7 +234,7 @@ impl From<Inliers> for ofc_inliers {
 
 impl ofc_inliers {
     /// The core's twin. Any numbers are a valid test: comparisons with NaN hold for no pixel.
-    pub fn into_core(self) -> Inliers {
+    pub(crate) fn into_core(self) -> Inliers {
         let Self { saturation, residual_form, residual_low, residual_high, norm_form, norm_low, norm_high } =
             self;
         Inliers {

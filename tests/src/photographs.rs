@@ -21,6 +21,9 @@ pub struct Photograph {
 
 impl Photograph {
     /// The picture restricted to its mask.
+    ///
+    /// # Panics
+    /// Never: the loader's sizes agree.
     #[must_use]
     pub fn image(&self) -> Image<'_> {
         Image::interleaved(&self.rgb, self.width, self.height, self.width * 3, Sample::U8, Order::Rgb)

@@ -5,15 +5,10 @@ use std::path::Path;
 /// What the header says before its first declaration: the manual's first page, and the macros that cbindgen cannot
 /// make from Rust.
 fn preamble() -> String {
-    let [major, minor, patch] = ["MAJOR", "MINOR", "PATCH"].map(|part| match part {
-        "MAJOR" => env!("CARGO_PKG_VERSION_MAJOR"),
-        "MINOR" => env!("CARGO_PKG_VERSION_MINOR"),
-        _ => env!("CARGO_PKG_VERSION_PATCH"),
-    });
     include_str!("../../ofc-ffi/header.txt")
-        .replace("@MAJOR@", major)
-        .replace("@MINOR@", minor)
-        .replace("@PATCH@", patch)
+        .replace("@MAJOR@", env!("CARGO_PKG_VERSION_MAJOR"))
+        .replace("@MINOR@", env!("CARGO_PKG_VERSION_MINOR"))
+        .replace("@PATCH@", env!("CARGO_PKG_VERSION_PATCH"))
 }
 
 fn generated() -> String {
