@@ -114,8 +114,7 @@ fn on_photographs_the_limit_keeps_the_surface_from_flattening() {
                 }
                 let nearest = least_squares(wrong, ellipsoid.cosines);
                 print!("{name} {:+.2}: least squares {:.2} deg", sign * turn, error(nearest.slants, wrong));
-                let integral = |slants| {
-                    let f = Orientation::new(compose(ellipsoid.norms, slants, wrong), 1e-6);
+                let integral = |f: &Orientation| {
                     integrability::integral(&image, |w| solution.inliers.bits(w), &f.f_inverse).unwrap().mean
                 };
                 let mut errors = Vec::new();
@@ -131,8 +130,9 @@ fn on_photographs_the_limit_keeps_the_surface_from_flattening() {
                     )
                     .expect("slants");
                     errors.push(error(found.slants, wrong));
-                    // The search is on a sample, the comparison on all.
-                    assert!(found.integral.mean <= 1.02 * integral(nearest.slants));
+                    // Two lights on the axis are one: then there is no inverse to compare with.
+                    let f = Orientation::new(compose(ellipsoid.norms, nearest.slants, wrong), 1e-6);
+                    assert!(f.rank < 3 || found.integral.mean <= integral(&f) * (1.0 + 1e-6));
                 }
                 println!(", slack 0.02, 0.05, 0.1, infinite: {errors:.2?}");
                 assert!(errors[3] > errors[1] + 5.0);

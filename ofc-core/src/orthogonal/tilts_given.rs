@@ -114,20 +114,21 @@ pub(crate) fn search(
         Sample::gather(image, &inliers, &IDENTITY, cells, workspace).ok_or(OrthogonalError::NoCells)?;
     let problem = Problem { sample, norms, cosines, tilts, residual_limit: nearest.residual_rms + slack };
     let mut best: Option<TiltIntegrability> = None;
-    // By reference: dropping the owning iterator could panic, as far as the compiler can tell.
-    for &start in &problem.starts(&nearest) {
-        let slants = problem.descend(start);
+    let mut consider = |slants| {
         let f_inverse = problem.f_inverse(slants);
-        let Some(integral) = integrability::integral(image, &inliers, &f_inverse) else { continue };
+        let Some(integral) = integrability::integral(image, &inliers, &f_inverse) else { return };
         if integral.mean.is_finite() && best.is_none_or(|best| integral.mean < best.integral.mean) {
             let residual_rms = constrained_slant::residual_rms(tilts, cosines, slants);
-            best = Some(TiltIntegrability {
-                slants,
-                integral,
-                residual_rms,
-                residual_limit: problem.residual_limit,
-            });
+            let residual_limit = problem.residual_limit;
+            best = Some(TiltIntegrability { slants, integral, residual_rms, residual_limit });
         }
+    };
+    // Where many normals look away from the camera the sample judges by other numbers than the integral does: whatever
+    // it leads to, the answer is no worse than the least-squares slants.
+    consider(nearest.slants);
+    // By reference: dropping the owning iterator could panic, as far as the compiler can tell.
+    for &start in &problem.starts(&nearest) {
+        consider(problem.descend(start));
     }
     best.ok_or(OrthogonalError::NoCells)
 }
