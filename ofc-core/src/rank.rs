@@ -71,7 +71,9 @@ impl Rank {
 /// Pixel values.
 ///
 /// # Scratch
-/// None; up to four passes over the picture.
+/// None but about 8 KiB of stack; up to four passes over the picture.
+// The windows of its passes need not lie on the stack at once, nor on that of the whole pipeline.
+#[inline(never)]
 pub fn rank(
     image: &Image,
     inliers: impl Fn(&Window) -> u64,
@@ -138,6 +140,7 @@ struct Colors {
 }
 
 impl Colors {
+    #[inline(never)]
     fn of(image: &Image, inliers: impl Fn(&Window) -> u64) -> Option<Self> {
         let (mut sum, mut squares, mut count) = ([0.0; 3], [0.0; 6], 0_u64);
         image.for_each_window(|window| {
@@ -187,6 +190,7 @@ fn noise_of_residuals(c: &Mat3, moments: &Mat3, deviation: f64) -> f64 {
 }
 
 /// The noise of a channel by second differences along rows, which a smooth surface does not show in.
+#[inline(never)]
 fn local_noise(image: &Image, inliers: impl Fn(&Window) -> u64) -> f64 {
     let (mut sum, mut count) = (0.0, 0_u64);
     image.for_each_window(|window| {
@@ -213,6 +217,7 @@ struct Conic {
 
 impl Conic {
     /// Least squares in the plane of the two longest axes.
+    #[inline(never)]
     fn of(image: &Image, inliers: impl Fn(&Window) -> u64, colors: &Colors) -> Option<Self> {
         let ([u, v, _], [largest, ..]) = (colors.eigen.vectors, colors.eigen.values);
         let scale = 1.0 / sqrt(largest);

@@ -140,7 +140,7 @@ pub const fn colors_len(pixels: usize) -> usize {
 /// See [`SegmentError`]; nothing is written then. No region is no error.
 ///
 /// # Scratch
-/// `colors` and `queue`; what they hold before does not matter. About 6 KiB of stack.
+/// `colors` and `queue`; what they hold before does not matter. About 10 KiB of stack.
 pub fn segment(
     image: &Image,
     usable: Usable,

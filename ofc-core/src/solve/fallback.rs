@@ -33,6 +33,8 @@ pub enum SlantFallback {
 }
 
 /// The slants of this fallback; `None` where it has none.
+// Its stack is needed only where there is no root.
+#[inline(never)]
 pub(super) fn slants(
     fallback: SlantFallback,
     image: &Image,
