@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Sourced by c_examples/run.sh and tests/run.sh: installs the Debian packages that are lacking, and says which.
 
 # Packages that building the examples needs.
@@ -5,7 +6,7 @@
 example_packages=(cmake g++ gcc libcli11-dev libopencv-core-dev libopencv-imgcodecs-dev libopencv-imgproc-dev nlohmann-json3-dev)
 # What the tests need beyond those.
 # shellcheck disable=SC2034
-test_packages=(libcmocka-dev python3-minimal)
+test_packages=(binutils libcmocka-dev python3-minimal shellcheck)
 
 # install_packages NAME...: as root, or with sudo.
 install_packages() {

@@ -3,7 +3,7 @@
 # Installs the Debian packages it lacks (.ci/packages.sh names them) as root or with sudo. Can be run again.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
-# shellcheck source=../.ci/packages.sh
+# shellcheck source-path=SCRIPTDIR source=../.ci/packages.sh
 . "$root/.ci/packages.sh"
 install_packages "${example_packages[@]}"
 need_cargo

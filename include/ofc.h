@@ -340,9 +340,11 @@ typedef struct ofc_color_fit {
     double residual_deviation;
     // Root mean square of the inliers' colors along their principal axes, descending, in pixel values.
     double color_deviations[3];
-    // t value of the form along the last of these axes: where it is small, the picture does not say how thick the
-    // ellipsoid is there. solve refuses below 5.
-    double thin_axis_t;
+    // Noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values.
+    double noise_deviation;
+    // Noise in each channel with which colors that do not determine C could look like these. solve refuses where it
+    // is below 1.5 times noise_deviation; C is biased by about the inverse square of that ratio.
+    double degenerate_noise_deviation;
     // Pixels within residual_form's band.
     int32_t inlier_count;
     // Subsets drawn.

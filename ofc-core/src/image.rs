@@ -368,17 +368,17 @@ impl Usable {
     /// The bits of `window`'s usable pixels.
     #[must_use]
     #[inline]
+    #[expect(
+        clippy::needless_bitwise_bool,
+        reason = "noise decides these comparisons, no branch predictor does"
+    )]
     pub fn bits(&self, window: &Window) -> u64 {
         let limit = self.saturation;
         window.masked
             & window.bits(|r, g, b| {
-                (r > 0.0 || g > 0.0 || b > 0.0)
-                    && r < limit
-                    && g < limit
-                    && b < limit
-                    && r.is_finite()
-                    && g.is_finite()
-                    && b.is_finite()
+                let lit = (r > 0.0) | (g > 0.0) | (b > 0.0);
+                let unsaturated = (r < limit) & (g < limit) & (b < limit);
+                lit & unsaturated & r.is_finite() & g.is_finite() & b.is_finite()
             })
     }
 

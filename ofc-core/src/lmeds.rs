@@ -15,7 +15,7 @@ use crate::mat3::symmetric_eigen;
 use crate::regression::{self, Estimate, Moments, TERMS};
 use crate::rng::Rng;
 use crate::select::{kth_smallest, median_rank};
-use libm::{ceil, fabs, log, log1p, pow, sqrt};
+use libm::{ceil, fabs, fabsf, log, log1p, pow, sqrt};
 
 /// Fewer usable pixels than this are refused: half of them must still hold the six of a subset.
 pub const MIN_PIXELS: usize = 12;
@@ -98,7 +98,7 @@ impl Params {
 ///
 /// `None` when a parameter is out of range (see [`Params`]) or the answer is above [`MAX_SUBSETS`].
 #[must_use]
-#[allow(clippy::cast_sign_loss, reason = "at least 1")]
+#[expect(clippy::cast_sign_loss, reason = "a count of at least 1")]
 pub fn subset_count(confidence: f64, outlier_share: f64, min_subsets: u32) -> Option<u32> {
     let in_range = confidence > 0.0
         && confidence < 1.0
@@ -152,9 +152,12 @@ pub struct Fit {
     pub residual_deviation: f64,
     /// The singular values of the inliers' colors, root mean square, descending, in pixel values.
     pub color_deviations: [f64; 3],
-    /// The t value of the form along the direction in which the colors extend least. Where it is small, the picture
-    /// does not say how thick the ellipsoid is there: colors, or normals, span less than three dimensions.
-    pub thin_axis_t: f64,
+    /// The noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values; at least
+    /// what rounding to the picture's steps makes.
+    pub noise_deviation: f64,
+    /// The noise in each channel with which colors that do not determine C could look like these. The coefficients are
+    /// biased by about (`noise_deviation` / `degenerate_noise_deviation`)^2, whatever their standard errors say.
+    pub degenerate_noise_deviation: f64,
     /// Usable pixels.
     pub usable: usize,
     /// Usable pixels within the band.
@@ -249,7 +252,8 @@ pub fn fit(image: &Image, usable: Usable, params: &Params, workspace: &mut [f32]
         coefficients: refit.coefficients,
         residual_deviation: refit.residual_deviation,
         color_deviations: deviations(&refit.moments, scale),
-        thin_axis_t: refit.thin_axis_t,
+        noise_deviation: refit.noise_deviation,
+        degenerate_noise_deviation: refit.degenerate_noise_deviation,
         usable: census.usable,
         inliers: refit.moments.count as usize,
         subsets,
@@ -267,6 +271,29 @@ fn moments(image: &Image, inliers: &Inliers, scale: f64) -> Moments {
     moments
 }
 
+/// Rounding to whole steps is noise of this many steps: 1 / sqrt(12).
+const ROUNDING: f64 = 0.288_675_134_594_812_9;
+
+/// The smallest difference in a channel between an inlier and the one before it, other than none: how finely the
+/// picture is quantised, whatever the type of its pixels. Zero when there are no differences.
+fn smallest_step(image: &Image, inliers: &Inliers) -> f64 {
+    let mut smallest = f32::INFINITY;
+    let mut previous = None;
+    image.for_each_window(|window| {
+        for_each_bit(inliers.bits(window), |i| {
+            let pixel = window.pixel(i);
+            for (now, before) in pixel.into_iter().zip(previous.unwrap_or(pixel)) {
+                let step = fabsf(now - before);
+                if step > 0.0 && step < smallest {
+                    smallest = step;
+                }
+            }
+            previous = Some(pixel);
+        });
+    });
+    if smallest.is_finite() { f64::from(smallest) } else { 0.0 }
+}
+
 fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
     symmetric_eigen(&moments.second_moments()).values.map(|square| sqrt(square.max(0.0)) / scale)
 }
@@ -274,7 +301,8 @@ fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
 struct Refit {
     coefficients: [Estimate; TERMS],
     residual_deviation: f64,
-    thin_axis_t: f64,
+    noise_deviation: f64,
+    degenerate_noise_deviation: f64,
     moments: Moments,
 }
 
@@ -305,10 +333,14 @@ fn reweighted(image: &Image, inliers: &Inliers, scale: f64, confidence: f64) -> 
         high: e.high * to_pixel_values,
         ..e
     });
-    let [.., thin_axis] = symmetric_eigen(&moments.second_moments()).vectors;
-    let (along, along_variance) = fit.along(thin_axis);
-    let thin_axis_t = along / sqrt(variance * along_variance).max(f64::MIN_POSITIVE);
-    Some(Refit { coefficients, residual_deviation: sqrt(variance), thin_axis_t, moments })
+    let rounding = smallest_step(image, inliers) * ROUNDING;
+    Some(Refit {
+        coefficients,
+        residual_deviation: sqrt(variance),
+        noise_deviation: (moments.noise(&fit.coefficients, residual_sum) / scale).max(rounding),
+        degenerate_noise_deviation: moments.degenerate_noise(&fit) / scale,
+        moments,
+    })
 }
 
 /// 2^-k for the k that brings `largest` into [1, 2).

@@ -60,12 +60,11 @@ pub fn compute(
 #[must_use]
 #[inline]
 pub fn normal(f_inverse: &Mat3, color: [f32; 3], length: Length) -> [f64; 3] {
-    let n = mat3::apply(f_inverse, color.map(f64::from));
-    match length {
-        Length::Kept => n,
-        Length::Unit => {
-            let squared = mat3::dot(n, n);
-            if squared > 0.0 { mat3::scale(n, 1.0 / sqrt(squared)) } else { n }
-        }
-    }
+    let [x, y, z] = mat3::apply(f_inverse, color.map(f64::from));
+    let factor = match length {
+        Length::Kept => 1.0,
+        // Of no color nothing comes: zero times the largest factor there is.
+        Length::Unit => 1.0 / sqrt((x * x + y * y + z * z).max(f64::MIN_POSITIVE)),
+    };
+    [x * factor, y * factor, z * factor]
 }

@@ -12,7 +12,7 @@ pub const RANK_THRESHOLD: f64 = 1e-3;
 /// F with what its singular values say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
-    /// Row i is the strength and direction of the one light that channel i could have been lit by, in pixel values.
+    /// Row i is `f_i`, the strength and direction of the one light that channel i could have been lit by, in pixel values.
     pub f: Mat3,
     /// The inverse of F over its singular values above the threshold; all of them when `rank` is 3.
     pub f_inverse: Mat3,

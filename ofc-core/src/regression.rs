@@ -115,6 +115,48 @@ impl Moments {
         )
     }
 
+    /// K, the sums of what noise does to the rows of M: noise of variance v in each channel changes the value of a form
+    /// D by a variance of v z^T K z in all, z being its coefficients. (Row m of M has the derivative 2 D rho.)
+    fn noise_matrix(&self) -> Matrix6<f64> {
+        let [rr, gg, bb, rg, rb, gb] = self.quadratic.map(|sum| 4.0 * sum);
+        Matrix6::from([
+            [rr, 0.0, 0.0, rg, rb, 0.0],
+            [0.0, gg, 0.0, rg, 0.0, gb],
+            [0.0, 0.0, bb, 0.0, rb, gb],
+            [rg, rg, 0.0, rr + gg, gb, rb],
+            [rb, 0.0, rb, gb, rr + bb, rg],
+            [0.0, gb, gb, rb, rg, gg + bb],
+        ])
+    }
+
+    /// The deviation of the noise in each channel that would explain residuals of this sum of squares about z.
+    #[must_use]
+    pub fn noise(&self, z: &Coefficients, residual_sum: f64) -> f64 {
+        let z = Vector6::from(*z);
+        sqrt(residual_sum / z.dot(&(self.noise_matrix() * z)).max(f64::MIN_POSITIVE))
+    }
+
+    /// The smallest deviation of noise in each channel with which these could be colors that do not determine z.
+    ///
+    /// Colors of a degenerate scene obey a second, homogeneous equation rho^T D rho = 0: C is only known up to
+    /// multiples of D. Noise alone then makes the mean square of that form v z^T K z. So this is the square root of the
+    /// smallest eigenvalue of M^T M relative to K.
+    #[must_use]
+    pub fn degenerate_noise(&self, fit: &LeastSquares) -> f64 {
+        let noise = self.noise_matrix();
+        let mut power = Matrix6::from(fit.inverse) * noise;
+        for _ in 0..SQUARINGS {
+            power *= power / power.amax().max(f64::MIN_POSITIVE);
+        }
+        // Every column is now a multiple of the eigenvector, apart from rounding: the largest one has least of it.
+        let columns: [[f64; TERMS]; TERMS] = power.into();
+        let size = |column: &[f64; TERMS]| column.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+        let largest = columns.into_iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+        let Some(z) = largest.map(Vector6::from) else { return 0.0 };
+        let spread = z.dot(&(noise * z));
+        if spread > 0.0 { sqrt(z.dot(&(self.normal_matrix() * z)).max(0.0) / spread) } else { 0.0 }
+    }
+
     /// The least-squares z, and (M^T M)^-1; `None` when the colors do not determine z.
     #[must_use]
     pub fn solve(&self) -> Option<LeastSquares> {
@@ -144,6 +186,9 @@ impl Moments {
 /// dependence leave 1e-16, the weakest real scenes 1e-9.
 const SMALLEST_PIVOT: f64 = 1e-13;
 
+/// Squarings of the power method for the smallest eigenvalue, 128 steps of it: enough to leave a few percent at most.
+const SQUARINGS: usize = 7;
+
 /// A least-squares solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeastSquares {
@@ -168,16 +213,6 @@ pub struct Estimate {
     pub low: f64,
     /// Upper confidence limit.
     pub high: f64,
-}
-
-impl LeastSquares {
-    /// The form in a unit direction of color, u^T C u, and its variance in units of the residual variance.
-    #[must_use]
-    pub fn along(&self, [r, g, b]: [f64; 3]) -> (f64, f64) {
-        let row = Vector6::from(monomials([r, g, b]));
-        let value = row.dot(&Vector6::from(self.coefficients));
-        (value, row.dot(&(Matrix6::from(self.inverse) * row)))
-    }
 }
 
 /// The row of M that belongs to a color.

@@ -264,9 +264,11 @@ pub struct ofc_color_fit {
     pub residual_deviation: f64,
     /// Root mean square of the inliers' colors along their principal axes, descending, in pixel values.
     pub color_deviations: [f64; 3],
-    /// t value of the form along the last of these axes: where it is small, the picture does not say how thick the
-    /// ellipsoid is there. solve refuses below 5.
-    pub thin_axis_t: f64,
+    /// Noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values.
+    pub noise_deviation: f64,
+    /// Noise in each channel with which colors that do not determine C could look like these. solve refuses where it
+    /// is below 1.5 times noise_deviation; C is biased by about the inverse square of that ratio.
+    pub degenerate_noise_deviation: f64,
     /// Pixels within residual_form's band.
     pub inlier_count: i32,
     /// Subsets drawn.
@@ -284,7 +286,8 @@ impl From<Fit> for ofc_color_fit {
             coefficients,
             residual_deviation,
             color_deviations,
-            thin_axis_t,
+            noise_deviation,
+            degenerate_noise_deviation,
             usable: _,
             inliers,
             subsets,
@@ -297,7 +300,8 @@ impl From<Fit> for ofc_color_fit {
             coefficients: coefficients.map(ofc_estimate::from),
             residual_deviation,
             color_deviations,
-            thin_axis_t,
+            noise_deviation,
+            degenerate_noise_deviation,
             inlier_count: count(inliers),
             subsets,
         }

@@ -23,7 +23,7 @@ impl Photograph {
     /// The picture restricted to its mask.
     ///
     /// # Panics
-    /// Never: the loader's sizes agree.
+    /// Never: the loader has checked the sizes.
     #[must_use]
     pub fn image(&self) -> Image<'_> {
         Image::interleaved(&self.rgb, self.width, self.height, self.width * 3, Sample::U8, Order::Rgb)
@@ -32,12 +32,14 @@ impl Photograph {
     }
 }
 
-/// Where the photographs are: `OFC_DATA`, or `shared/data` beside the project.
+/// Where the photographs are: `OFC_DATA`, or `shared/data` beside the project or further up.
 #[must_use]
 pub fn directory() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let directory = std::env::var_os("OFC_DATA").map_or(beside, PathBuf::from);
-    directory.is_dir().then_some(directory)
+    if let Some(given) = std::env::var_os("OFC_DATA") {
+        return Some(PathBuf::from(given)).filter(|directory| directory.is_dir());
+    }
+    let mut places = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().map(|above| above.join("shared/data"));
+    places.find(|directory| directory.is_dir())
 }
 
 /// The photograph of that name; `None`, with a printed line, where the data are not there.
