@@ -1,34 +1,29 @@
 //! `include/ofc.h` alone compiles without a warning in every dialect that users have.
 
-use ofc_tests::shipped::{root, run};
+use ofc_tests::shipped::root;
+use std::io::Write;
+use std::process::{Command, Stdio};
 
 const DIALECTS: [(&str, &str); 6] =
     [("gcc", "c99"), ("gcc", "c11"), ("gcc", "c17"), ("g++", "c++11"), ("g++", "c++17"), ("g++", "c++20")];
 
 /// What the compiler says of a source text; empty when it is content.
 fn complaints(compiler: &str, dialect: &str, text: &str) -> String {
-    let folder = std::env::temp_dir().join(format!("ofc-header-{}-{dialect}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder for the source");
-    let source = folder.join(if compiler == "gcc" { "use.c" } else { "use.cpp" });
-    std::fs::write(&source, text).expect("the source");
+    let language = if compiler == "gcc" { "c" } else { "c++" };
     let include = root().join("include");
-    let output = run(
-        compiler,
-        &[
-            &format!("-std={dialect}"),
-            "-Wall",
-            "-Wextra",
-            "-Wpedantic",
-            "-Werror",
-            "-fsyntax-only",
-            "-I",
-            &include.to_string_lossy(),
-            &source.to_string_lossy(),
-        ],
-    );
+    let mut process = Command::new(compiler)
+        .args([&format!("-std={dialect}"), "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only"])
+        .args(["-x", language, "-I"])
+        .arg(include)
+        .arg("-")
+        .stdin(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap_or_else(|error| panic!("{compiler}: {error}"));
+    process.stdin.take().expect("a pipe").write_all(text.as_bytes()).expect("the compiler reads");
+    let output = process.wait_with_output().expect("the compiler ends");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.success(), said.is_empty(), "{said}");
-    std::fs::remove_dir_all(&folder).expect("the folder goes");
     said
 }
 
