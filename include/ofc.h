@@ -130,6 +130,18 @@
 // There is no root: least squares over eqs. 24.
 #define OFC_SLANTS_LEAST_SQUARES 2
 
+// There is no root: the least integral (15) that eqs. 24 allow.
+#define OFC_SLANTS_TILT_INTEGRABILITY 3
+
+// There is no root: Pentland's slants, eq. 22.
+#define OFC_SLANTS_PENTLAND 4
+
+// There is no root: Lee and Rosenfeld's slants, eq. 23.
+#define OFC_SLANTS_LEE_ROSENFELD 5
+
+// There is no root: Zheng and Chellappa's slants.
+#define OFC_SLANTS_ZHENG_CHELLAPPA 6
+
 // Success.
 #define OFC_STATUS_OK 0
 
@@ -507,7 +519,9 @@ typedef struct ofc_solve_params {
     struct ofc_lmeds_params lmeds;
     // Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
     double rank_threshold;
-    // 1: where eqs. 25 have no root, take the slants that satisfy eqs. 24 best; 0: refuse. Default 1.
+    // Where eqs. 25 have no root, 0: refuse; 1: take the slants that satisfy eqs. 24 best; 2: take those that make the
+    // integral (15) smallest among the ones that eqs. 24 do not rule out; 3, 4, 5: Pentland's, Lee and Rosenfeld's,
+    // Zheng and Chellappa's. Default 1.
     int32_t slant_fallback;
     // Must be zero.
     uint32_t reserved[7];

@@ -93,6 +93,15 @@ fn pair(k: f64, (sin_a, cos_a): (f64, f64), (sin_b, cos_b): (f64, f64)) -> (f64,
     (k * sin_a * sin_b + cos_a * cos_b, derivatives)
 }
 
+/// The root mean square of the differences between the two sides of eqs. 24; infinite for input that is not finite.
+#[must_use]
+pub fn residual_rms(tilts: [f64; 3], cosines: [f64; 3], slants: [f64; 3]) -> f64 {
+    Constraints::new(tilts, cosines).map_or(f64::INFINITY, |constraints| {
+        let (residuals, _) = constraints.evaluate(slants);
+        libm::sqrt(mat3::dot(residuals, residuals) / 3.0)
+    })
+}
+
 fn max_abs(v: [f64; 3]) -> f64 {
     v.iter().fold(0.0, |largest, component| component.abs().max(largest))
 }
@@ -106,7 +115,7 @@ fn sum([a1, a2, a3]: [f64; 3], [b1, b2, b3]: [f64; 3]) -> [f64; 3] {
 }
 
 /// The inverse by cofactors; infinite or not a number where there is none.
-fn inverse(&[a, b, c]: &Mat3) -> Mat3 {
+pub(crate) fn inverse(&[a, b, c]: &Mat3) -> Mat3 {
     let (bc, ca, ab) = (mat3::cross(b, c), mat3::cross(c, a), mat3::cross(a, b));
     let determinant = mat3::dot(a, bc);
     mat3::transpose(&[bc, ca, ab]).map(|row| row.map(|cofactor| cofactor / determinant))

@@ -18,7 +18,7 @@ pub struct Integrability {
 
 /// The smallest n3 that slopes are divided by: steeper normals, and those that look away from the camera, count with
 /// this slope, so that a few grazing pixels do not decide between candidates.
-const SMALLEST_N3: f64 = 0.05;
+pub(crate) const SMALLEST_N3: f64 = 0.05;
 
 /// The integral (15) of the normals `f_inverse` rho, by finite differences on cells of four inliers.
 ///

@@ -28,9 +28,22 @@ pub(crate) const CONSISTENCY: f64 = 1.482_602_218_505_602;
 
 const CONCENTRATION_STEPS: usize = 10;
 
+/// What fits the form to the pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Least median of squares, rejection, and least squares over what is left.
+    #[default]
+    LeastMedian,
+    /// Least squares over all usable pixels, none rejected: photometric stereo with unknown lights as R. J. Woodham, Y.
+    /// Iwahori and R. A. Barman (TR 91-18, 1991) have it. For pictures in which every pixel obeys the model.
+    LeastSquares,
+}
+
 /// How to search, and what to reject.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
+    /// What fits. Default [`Method::LeastMedian`]; the search's parameters mean nothing to the other.
+    pub method: Method,
     /// The probability that at least one subset is free of outliers, in (0, 1). Default 0.9999.
     pub confidence: f64,
     /// The share of outliers for which that holds, in [0, 1). Default 0.5.
@@ -52,6 +65,7 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         Self {
+            method: Method::LeastMedian,
             confidence: 0.9999,
             outlier_share: 0.5,
             min_subsets: 500,
@@ -122,7 +136,7 @@ pub enum FitError {
 /// What the regression found. Coefficients are in (pixel value)^-2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
-    /// The z that minimises the median squared residual.
+    /// The z that minimises the median squared residual; that of least squares where that is the method.
     pub robust: Coefficients,
     /// The square root of that median, over all usable pixels.
     pub median_residual: f64,
@@ -130,7 +144,7 @@ pub struct Fit {
     pub dispersion: f64,
     /// The robust coefficient of determination, 1 - `median_residual`^2.
     pub r_squared: f64,
-    /// The rejection that follows from `robust` and `dispersion`.
+    /// The rejection that follows from `robust` and `dispersion`; everything is accepted under least squares.
     pub band: Band,
     /// The reweighted fit: least squares over the inliers.
     pub coefficients: [Estimate; TERMS],
@@ -148,7 +162,7 @@ pub struct Fit {
     pub usable: usize,
     /// Usable pixels within the band.
     pub inliers: usize,
-    /// Subsets drawn.
+    /// Subsets drawn; none under least squares.
     pub subsets: u32,
 }
 
@@ -197,12 +211,22 @@ pub fn fit(image: &Image, usable: Usable, params: &Params, workspace: &mut [f32]
     let degenerate = || FitError::RankDeficient {
         color_deviations: deviations(&moments(image, &Inliers::all(usable), scale), scale),
     };
-    let mut rng = Rng::new(params.seed);
-    let sample_len = census.usable.min(params.sample_size as usize);
-    let mut sample = Sample::gather(image, usable, census.usable, sample_len, scale, &mut rng, workspace)
-        .ok_or(FitError::WorkspaceTooShort)?;
-    let proposal = sample.search(subsets, &mut rng).ok_or_else(degenerate)?;
-    let robust = sample.concentrate(proposal).map(|c| c * scale * scale);
+    let scaled = match params.method {
+        Method::LeastMedian => {
+            let mut rng = Rng::new(params.seed);
+            let sample_len = census.usable.min(params.sample_size as usize);
+            let mut sample =
+                Sample::gather(image, usable, census.usable, sample_len, scale, &mut rng, workspace)
+                    .ok_or(FitError::WorkspaceTooShort)?;
+            let proposal = sample.search(subsets, &mut rng).ok_or_else(degenerate)?;
+            sample.concentrate(proposal)
+        }
+        Method::LeastSquares => {
+            let all = moments(image, &Inliers::all(usable), scale);
+            all.solve().ok_or_else(degenerate)?.coefficients
+        }
+    };
+    let robust = scaled.map(|c| c * scale * scale);
 
     let residuals = image.gather(
         |window| usable.bits(window),
@@ -212,7 +236,10 @@ pub fn fit(image: &Image, usable: Usable, params: &Params, workspace: &mut [f32]
     let median_residual = kth_smallest(residuals, median_rank(residuals.len())).map_or(0.0, f64::from);
     let count = census.usable as f64;
     let dispersion = CONSISTENCY * (1.0 + 5.0 / (count - TERMS as f64)) * median_residual;
-    let band = Band::residual(robust, dispersion, params.rejection);
+    let (band, subsets) = match params.method {
+        Method::LeastMedian => (Band::residual(robust, dispersion, params.rejection), subsets),
+        Method::LeastSquares => (Band { form: robust, ..Band::EVERYTHING }, 0),
+    };
 
     let inliers = Inliers { residual: band, ..Inliers::all(usable) };
     let refit = reweighted(image, &inliers, scale, params.limits_confidence).ok_or_else(degenerate)?;
@@ -317,7 +344,7 @@ fn reweighted(image: &Image, inliers: &Inliers, scale: f64, confidence: f64) -> 
 }
 
 /// 2^-k for the k that brings `largest` into [1, 2).
-fn reciprocal_power_of_two(largest: f32) -> f64 {
+pub(crate) fn reciprocal_power_of_two(largest: f32) -> f64 {
     libm::ldexp(1.0, -libm::ilogbf(largest))
 }
 

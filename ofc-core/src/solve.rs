@@ -1,13 +1,18 @@
 //! The whole pipeline of section 3.4 over one workspace.
 
+mod fallback;
+
+pub use fallback::SlantFallback;
+
 use crate::constrained_slant::{self, MAX_CANDIDATES};
 use crate::ellipsoid::{self, Ellipsoid};
-use crate::image::{Census, Image, Usable};
+use crate::image::{Census, Image, Usable, Window};
 use crate::inliers::{Band, Inliers};
 use crate::integrability;
-use crate::lmeds::{self, Fit, FitError};
+use crate::lmeds::{self, Fit, FitError, Method};
 use crate::location::{self, Location};
 use crate::orientation::{self, Orientation, RANK_THRESHOLD};
+use crate::rank::{self, Rank};
 use crate::tilt::pentland::{self, Tilts};
 use heapless::Vec;
 
@@ -26,8 +31,8 @@ pub struct Params {
     pub saturation: Option<f32>,
     /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
     pub rank_threshold: f64,
-    /// Where eqs. 25 have no root, answer with the slants that satisfy eqs. 24 best. Default `true`.
-    pub slant_fallback: bool,
+    /// Where the slants come from when eqs. 25 have no root. Default [`SlantFallback::LeastSquares`].
+    pub fallback: SlantFallback,
 }
 
 impl Default for Params {
@@ -36,7 +41,7 @@ impl Default for Params {
             lmeds: lmeds::Params::default(),
             saturation: None,
             rank_threshold: RANK_THRESHOLD,
-            slant_fallback: true,
+            fallback: SlantFallback::LeastSquares,
         }
     }
 }
@@ -79,6 +84,14 @@ pub enum SlantSource {
     Root,
     /// There is no root: least squares over eqs. 24.
     LeastSquares,
+    /// There is no root: the least integral (15) that eqs. 24 allow.
+    TiltIntegrability,
+    /// There is no root: Pentland's slants, eq. 22.
+    Pentland,
+    /// There is no root: Lee and Rosenfeld's slants, eq. 23.
+    LeeRosenfeld,
+    /// There is no root: Zheng and Chellappa's slants.
+    ZhengChellappa,
 }
 
 /// Slants that are consistent with the tilts, and how integrable their normals are.
@@ -118,6 +131,8 @@ pub struct Solution {
     pub census: Census,
     /// The root mean square of the colors along their principal axes, descending, in pixel values.
     pub color_deviations: [f64; 3],
+    /// The ranks of colors and normals, of the inliers where there is a fit; `None` where there are no usable pixels.
+    pub rank: Option<Rank>,
     /// The regression; `None` where the colors do not determine C.
     pub fit: Option<Fit>,
     /// The location of the norms of the normals.
@@ -162,6 +177,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         outcome: Outcome::RankDeficient,
         census: usable.count(image),
         color_deviations: [0.0; 3],
+        rank: None,
         fit: None,
         norm_location: None,
         inliers: Inliers::none(usable),
@@ -174,7 +190,8 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let fit = match lmeds::fit(image, usable, &params.lmeds, workspace) {
         Ok(fit) => fit,
         Err(FitError::RankDeficient { color_deviations }) => {
-            return Ok(Solution { color_deviations, ..solution });
+            let rank = rank::rank(image, |window| usable.bits(window), None);
+            return Ok(Solution { color_deviations, rank, ..solution });
         }
         Err(error) => return Err(error),
     };
@@ -182,14 +199,27 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     solution.color_deviations = fit.color_deviations;
     solution.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
     solution.inlier_count = fit.inliers;
-    let is_determined = fit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * fit.noise_deviation;
-    if !is_determined {
+    let bits = |window: &Window| solution.inliers.bits(window);
+    // Outliers that least squares keeps are no noise: the robust dispersion leaves them out.
+    let deviation = match params.lmeds.method {
+        Method::LeastMedian => fit.residual_deviation,
+        Method::LeastSquares => fit.residual_deviation.min(fit.dispersion),
+    };
+    solution.rank = rank::rank(image, bits, Some((fit.z(), deviation)));
+    let share = if deviation < fit.residual_deviation { deviation / fit.residual_deviation } else { 1.0 };
+    let noise = fit.noise_deviation * share;
+    let is_determined = fit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * noise;
+    if !is_determined || solution.rank.is_some_and(|rank| rank.colors < 3) {
         return Ok(solution);
     }
 
     solution.outcome = Outcome::NotPositiveDefinite;
     let Ok(ellipsoid) = ellipsoid::decompose(&fit.z()) else { return Ok(solution) };
     solution.ellipsoid = Some(ellipsoid);
+    if solution.rank.is_some_and(|rank| !rank.is_full()) {
+        solution.outcome = Outcome::RankDeficient;
+        return Ok(solution);
+    }
     solution.norm_location = location::norms(image, &solution.inliers, &fit.z(), workspace);
     if let Some(norms) = solution.norm_location {
         solution.inliers.norm = Band::norm(fit.z(), &norms, params.lmeds.rejection);
@@ -202,7 +232,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let Some(Tilts { tilts, .. }) = solution.tilts else { return Ok(solution) };
 
     solution.outcome = Outcome::NoConsistentSlants;
-    solution.choice = choose(image, &inliers, &ellipsoid, tilts, params);
+    solution.choice = choose(image, &inliers, &ellipsoid, tilts, params, workspace);
     match &solution.choice {
         None => {}
         Some(choice) if choice.orientation.rank < 3 => solution.outcome = Outcome::RankDeficient,
@@ -218,6 +248,7 @@ fn choose(
     ellipsoid: &Ellipsoid,
     tilts: [f64; 3],
     params: &Params,
+    workspace: &mut [f32],
 ) -> Option<Choice> {
     let orient = |slants| {
         Orientation::new(orientation::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
@@ -245,16 +276,7 @@ fn choose(
         let orientation = orient(slants);
         return Some(Choice { slants, source: SlantSource::Root, candidates, chosen, orientation });
     }
-    if !params.slant_fallback {
-        return None;
-    }
-    let nearest = constrained_slant::least_squares(tilts, ellipsoid.cosines);
-    let orientation = orient(nearest.slants);
-    Some(Choice {
-        slants: nearest.slants,
-        source: SlantSource::LeastSquares,
-        candidates,
-        chosen: 0,
-        orientation,
-    })
+    let (slants, source) = fallback::slants(params.fallback, image, inliers, ellipsoid, tilts, workspace)?;
+    let orientation = orient(slants);
+    Some(Choice { slants, source, candidates, chosen: 0, orientation })
 }

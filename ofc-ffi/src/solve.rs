@@ -13,7 +13,7 @@ use crate::types::{
     ofc_orientation, ofc_slants, ofc_tilts,
 };
 use core::ffi::c_void;
-use ofc_core::solve::{self, Candidate, Params, SlantSource, Solution};
+use ofc_core::solve::{self, Candidate, Params, SlantFallback, SlantSource, Solution};
 
 /// Where the slants come from: one of OFC_SLANTS_*.
 pub type ofc_slant_source = i32;
@@ -23,6 +23,14 @@ pub const OFC_SLANTS_NONE: i32 = 0;
 pub const OFC_SLANTS_ROOT: i32 = 1;
 /// There is no root: least squares over eqs. 24.
 pub const OFC_SLANTS_LEAST_SQUARES: i32 = 2;
+/// There is no root: the least integral (15) that eqs. 24 allow.
+pub const OFC_SLANTS_TILT_INTEGRABILITY: i32 = 3;
+/// There is no root: Pentland's slants, eq. 22.
+pub const OFC_SLANTS_PENTLAND: i32 = 4;
+/// There is no root: Lee and Rosenfeld's slants, eq. 23.
+pub const OFC_SLANTS_LEE_ROSENFELD: i32 = 5;
+/// There is no root: Zheng and Chellappa's slants.
+pub const OFC_SLANTS_ZHENG_CHELLAPPA: i32 = 6;
 
 /// What ofc_solve() does. Set by ofc_solve_params_default().
 #[repr(C)]
@@ -32,7 +40,9 @@ pub struct ofc_solve_params {
     pub lmeds: ofc_lmeds_params,
     /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
     pub rank_threshold: f64,
-    /// 1: where eqs. 25 have no root, take the slants that satisfy eqs. 24 best; 0: refuse. Default 1.
+    /// Where eqs. 25 have no root, 0: refuse; 1: take the slants that satisfy eqs. 24 best; 2: take those that make the
+    /// integral (15) smallest among the ones that eqs. 24 do not rule out; 3, 4, 5: Pentland's, Lee and Rosenfeld's,
+    /// Zheng and Chellappa's. Default 1.
     pub slant_fallback: i32,
     /// Must be zero.
     pub reserved: [u32; 7],
@@ -81,13 +91,8 @@ unsafe impl Plain for ofc_solution {}
 
 impl ofc_solve_params {
     fn defaults() -> Self {
-        let Params { lmeds: _, saturation: _, rank_threshold, slant_fallback } = Params::default();
-        Self {
-            lmeds: ofc_lmeds_params::defaults(),
-            rank_threshold,
-            slant_fallback: i32::from(slant_fallback),
-            reserved: [0; 7],
-        }
+        let Params { lmeds: _, saturation: _, rank_threshold, fallback: _ } = Params::default();
+        Self { lmeds: ofc_lmeds_params::defaults(), rank_threshold, slant_fallback: 1, reserved: [0; 7] }
     }
 
     fn check(self) -> Result<Params, ofc_status> {
@@ -96,12 +101,16 @@ impl ofc_solve_params {
             return Err(OFC_STATUS_RESERVED_NOT_ZERO);
         }
         let (lmeds, saturation) = lmeds.check()?;
-        let slant_fallback = match slant_fallback {
-            0 => false,
-            1 => true,
+        let fallback = match slant_fallback {
+            0 => SlantFallback::Refuse,
+            1 => SlantFallback::LeastSquares,
+            2 => SlantFallback::TiltIntegrability,
+            3 => SlantFallback::PentlandSlant,
+            4 => SlantFallback::LeeRosenfeldSlant,
+            5 => SlantFallback::ZhengChellappaSlant,
             _ => return Err(OFC_STATUS_INVALID_PARAMETER),
         };
-        let params = Params { lmeds, saturation, rank_threshold, slant_fallback };
+        let params = Params { lmeds, saturation, rank_threshold, fallback };
         if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
     }
 }
@@ -119,6 +128,7 @@ impl From<&Solution> for ofc_solution {
             outcome,
             census,
             color_deviations,
+            rank: _,
             fit,
             norm_location,
             inliers,
@@ -154,6 +164,10 @@ impl From<&Solution> for ofc_solution {
             (result.slant_source, result.chosen) = match choice.source {
                 SlantSource::Root => (OFC_SLANTS_ROOT, count(choice.chosen)),
                 SlantSource::LeastSquares => (OFC_SLANTS_LEAST_SQUARES, -1),
+                SlantSource::TiltIntegrability => (OFC_SLANTS_TILT_INTEGRABILITY, -1),
+                SlantSource::Pentland => (OFC_SLANTS_PENTLAND, -1),
+                SlantSource::LeeRosenfeld => (OFC_SLANTS_LEE_ROSENFELD, -1),
+                SlantSource::ZhengChellappa => (OFC_SLANTS_ZHENG_CHELLAPPA, -1),
             };
             result.orientation = choice.orientation.into();
         }

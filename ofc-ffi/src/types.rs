@@ -80,6 +80,7 @@ impl ofc_lmeds_params {
     /// The defaults.
     pub(crate) fn defaults() -> Self {
         let lmeds::Params {
+            method: _,
             confidence,
             outlier_share,
             min_subsets,
@@ -121,6 +122,7 @@ impl ofc_lmeds_params {
             return Err(OFC_STATUS_RESERVED_NOT_ZERO);
         }
         let params = lmeds::Params {
+            method: lmeds::Method::LeastMedian,
             confidence,
             outlier_share,
             min_subsets,

@@ -5,6 +5,7 @@ pub mod depth_maps;
 pub mod linear;
 pub mod lmeds_oracle;
 pub mod photographs;
+pub mod scene;
 pub mod scenes;
 pub mod shipped;
 pub mod slant_oracle;

@@ -25,13 +25,19 @@ struct Mean {
 }
 
 impl Mean {
-    /// Adds the differences `to` - `from` of the pairs in `bits`.
-    fn add(&mut self, bits: u64, (to, to_shift): (&Window, usize), (from, from_shift): (&Window, usize)) {
+    /// Adds the differences `to` - `from` of the pairs in `bits`, after `value`.
+    fn add(
+        &mut self,
+        bits: u64,
+        (to, to_shift): (&Window, usize),
+        (from, from_shift): (&Window, usize),
+        value: impl Fn([f32; 3]) -> [f64; 3],
+    ) {
         let mut sums = [0.0; 3];
         for_each_bit(bits, |i| {
-            let (to, from) = (to.pixel(i + to_shift), from.pixel(i + from_shift));
+            let (to, from) = (value(to.pixel(i + to_shift)), value(from.pixel(i + from_shift)));
             for ((sum, to), from) in sums.iter_mut().zip(to).zip(from) {
-                *sum += f64::from(to) - f64::from(from);
+                *sum += to - from;
             }
         });
         for (total, sum) in self.sums.iter_mut().zip(sums) {
@@ -51,14 +57,23 @@ impl Mean {
 /// `inliers` gives the bits of a window's inliers. `None` when a direction has no pair of inliers, or a channel's mean
 /// gradient is zero: then it has no tilt.
 pub fn tilts(image: &Image, inliers: impl Fn(&Window) -> u64) -> Option<Tilts> {
+    tilts_of(image, inliers, |color| color.map(f64::from))
+}
+
+/// The same of the picture that has `value` of every color in its place.
+pub fn tilts_of(
+    image: &Image,
+    inliers: impl Fn(&Window) -> u64,
+    value: impl Fn([f32; 3]) -> [f64; 3],
+) -> Option<Tilts> {
     let (mut east, mut north, mut north_east, mut north_west) =
         (Mean::default(), Mean::default(), Mean::default(), Mean::default());
     for_each_block(image, inliers, |block: &Block| {
         let (top, bottom) = (&block.top, &block.bottom);
-        east.add(block.horizontal(), (top, 1), (top, 0));
-        north.add(block.vertical(), (top, 0), (bottom, 0));
-        north_east.add(block.rising(), (top, 1), (bottom, 0));
-        north_west.add(block.falling(), (top, 0), (bottom, 1));
+        east.add(block.horizontal(), (top, 1), (top, 0), &value);
+        north.add(block.vertical(), (top, 0), (bottom, 0), &value);
+        north_east.add(block.rising(), (top, 1), (bottom, 0), &value);
+        north_west.add(block.falling(), (top, 0), (bottom, 1), &value);
     });
     let mut result = Tilts { tilts: [0.0; 3], gradients: [[0.0; 2]; 3] };
     for (channel, (tilt, gradient)) in result.tilts.iter_mut().zip(&mut result.gradients).enumerate() {
