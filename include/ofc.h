@@ -57,6 +57,13 @@
                        OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) * 16)
 #define OFC_NORM_LOCATION_WORKSPACE_SIZE(width, height) ((size_t)(width) * (size_t)(height) * 8)
 #define OFC_LOCATION_WORKSPACE_SIZE(count) ((size_t)(count) * 8)
+#define OFC_LARGEST_DISC_WORKSPACE_SIZE(width, height) ((size_t)(width) * (size_t)(height) * 4)
+#define OFC_CHECK_WORKSPACE_SIZE(width, height) ((size_t)(width) * (size_t)(height) * 4)
+#define OFC_SEGMENT_WORKSPACE_SIZE(width, height) ((size_t)(width) * (size_t)(height) * 16)
+#define OFC_ORTHOGONAL_ANNEALING_WORKSPACE_SIZE(width, height, sample_cells)                                  \
+    (OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_cells)) * 36)
+#define OFC_CONSTRAINED_SLANTS_INTEGRABLE_WORKSPACE_SIZE(width, height, sample_cells)                         \
+    OFC_ORTHOGONAL_ANNEALING_WORKSPACE_SIZE(width, height, sample_cells)
 #define OFC_SIZE_OF_LARGER(a, b) ((a) > (b) ? (a) : (b))
 #define OFC_SIZE_OF_SMALLER(a, b) ((a) < (b) ? (a) : (b))
 
@@ -106,17 +113,50 @@
 // As OFC_PIXEL_PLANES8 with 32-bit floats.
 #define OFC_PIXEL_PLANES32F 25
 
+// Pentland's, along the axes and the diagonals (eqs. 20-21).
+#define OFC_TILT_PENTLAND 0
+
+// Lee and Rosenfeld's.
+#define OFC_TILT_LEE_ROSENFELD 1
+
+// Zheng and Chellappa's.
+#define OFC_TILT_ZHENG_CHELLAPPA 2
+
+// Chojnacki, Brooks and Gibbins', over the largest disc inside the inliers.
+#define OFC_TILT_CHOJNACKI 3
+
+// The caller's own.
+#define OFC_TILT_GIVEN 4
+
+// In the range of the method's equation: the slant solves it.
+#define OFC_REACH_INSIDE 0
+
+// Beyond its value at slant 0, which is the answer: the zeros of Tables 1 and 2.
+#define OFC_REACH_BELOW_ZERO 1
+
+// Beyond its value at the largest slant, which is the answer.
+#define OFC_REACH_ABOVE_LARGEST 2
+
 // Set to 1.
 #define OFC_LENGTH_UNIT 0
 
 // As the color gives it: near 1 where the model holds.
 #define OFC_LENGTH_KEPT 1
 
+// No tilts were given: the convex one.
+#define OFC_TWIN_CONVEX 0
+
+// The tilts of the rows of F that are nearer to those given.
+#define OFC_TWIN_TILTS 1
+
 // The alignment in bytes that every workspace must have; what malloc returns has it.
 #define OFC_WORKSPACE_ALIGNMENT 8
 
 // Lights at most.
 #define OFC_MAX_LIGHTS 32
+
+// Regions at most.
+#define OFC_MAX_REGIONS 16
 
 // No more slants than this are consistent with three tilts and three cosines.
 #define OFC_MAX_CANDIDATES 8
@@ -141,6 +181,24 @@
 
 // There is no root: Zheng and Chellappa's slants.
 #define OFC_SLANTS_ZHENG_CHELLAPPA 6
+
+// Return OFC_STATUS_NO_CONSISTENT_SLANTS.
+#define OFC_FALLBACK_REFUSE 0
+
+// Take the slants that satisfy eqs. 24 best.
+#define OFC_FALLBACK_LEAST_SQUARES 1
+
+// Take those that make the integral (15) smallest among the ones that eqs. 24 do not rule out.
+#define OFC_FALLBACK_TILT_INTEGRABILITY 2
+
+// Take Pentland's, eq. 22.
+#define OFC_FALLBACK_PENTLAND 3
+
+// Take Lee and Rosenfeld's, eq. 23.
+#define OFC_FALLBACK_LEE_ROSENFELD 4
+
+// Take Zheng and Chellappa's.
+#define OFC_FALLBACK_ZHENG_CHELLAPPA 5
 
 // Success.
 #define OFC_STATUS_OK 0
@@ -205,6 +263,12 @@
 // No two by two square of inliers to take differences on.
 #define OFC_STATUS_NO_CELLS -43
 
+// Least median of squares, the paper's.
+#define OFC_FIT_LEAST_MEDIAN 0
+
+// Least squares over every usable pixel, none rejected: Woodham, Iwahori and Barman's, for pictures without outliers.
+#define OFC_FIT_LEAST_SQUARES 1
+
 // The result of a call: 0 is success; negative is an error that leaves every output as it was; positive is a sound
 // question without a full answer, and each call says what it writes then. Numbers are never reused.
 typedef int32_t ofc_status;
@@ -238,60 +302,6 @@ typedef struct ofc_image {
     // Bytes from a row of the mask to the next; without a mask it does not matter.
     size_t mask_stride_bytes;
 } ofc_image;
-
-// The pixels that obey the model, as a test of a pixel's color rho alone: finite, not black, below the saturation
-// level, and rho^T C rho within both bands. It can be applied to another frame under the same lights.
-typedef struct ofc_inliers {
-    // Channels at or above this are saturated.
-    double saturation;
-    // C of the first rejection, by residual: c11, c22, c33, c12, c13, c23.
-    double residual_form[6];
-    // Smallest accepted rho^T C rho.
-    double residual_low;
-    // Largest accepted rho^T C rho.
-    double residual_high;
-    // C of the second rejection, by the length of the normal.
-    double norm_form[6];
-    // Smallest accepted rho^T C rho.
-    double norm_low;
-    // Largest accepted rho^T C rho.
-    double norm_high;
-} ofc_inliers;
-
-// Tilts of the three channels' equivalent lights.
-typedef struct ofc_tilts {
-    // Counter-clockwise from x in (-pi, pi], for a convex surface.
-    double tilt_rad[3];
-    // Mean gradient (Ix, Iy) of each channel over the inliers, pixel values a pixel, y up: r, g, b.
-    double mean_gradient[6];
-} ofc_tilts;
-
-// The color-orientation matrix F, rho = F n, row-major.
-typedef struct ofc_orientation {
-    // Row i is f_i: strength and direction of the one light that channel i could have been lit by, in pixel values.
-    double f[9];
-    // The inverse, n = f_inverse rho, over the singular values above the threshold.
-    double f_inverse[9];
-    // Singular values of F, descending.
-    double singular_values[3];
-    // How many of them are above the threshold: 3 where F can be inverted.
-    int32_t rank;
-    // Zero.
-    uint32_t reserved;
-} ofc_orientation;
-
-// The integral (15) of normals, as a mean over cells of four inliers.
-typedef struct ofc_integrability {
-    // Mean of (dp/dy - dq/dx)^2, per pixel^2.
-    double mean;
-    // How many cells.
-    int32_t cells;
-    // Zero.
-    uint32_t reserved;
-} ofc_integrability;
-
-// What becomes of a normal's length: one of OFC_LENGTH_*.
-typedef int32_t ofc_length;
 
 // Where the slants come from: one of OFC_SLANTS_*.
 typedef int32_t ofc_slant_source;
@@ -356,6 +366,22 @@ typedef struct ofc_color_fit {
     uint32_t subsets;
 } ofc_color_fit;
 
+// Effective ranks, and the singular values behind them. F can be recovered where both ranks are 3.
+typedef struct ofc_rank {
+    // Root mean square of the colors along their principal axes, descending, in pixel values.
+    double color_deviations[3];
+    // The noise that they are compared with.
+    double color_noise;
+    // Root mean square of the normals along their principal axes, descending; zero in directions that are not seen.
+    double normal_deviations[3];
+    // The noise that they are compared with.
+    double normal_noise;
+    // Of the colors, 1 to 3; 0 where there are no pixels.
+    int32_t colors;
+    // Of the normals, 1 to 3; 0 where the colors do not say: those of one light, or of a gray picture.
+    int32_t normals;
+} ofc_rank;
+
 // Where most of a set of numbers lies: the one-dimensional least median of squares.
 typedef struct ofc_location {
     // Midpoint of the shortest interval that holds half of the numbers.
@@ -365,6 +391,25 @@ typedef struct ofc_location {
     // Robust dispersion: 1.4826 (1 + 5 / (n - 1)) median_distance.
     double dispersion;
 } ofc_location;
+
+// The pixels that obey the model, as a test of a pixel's color rho alone: finite, not black, below the saturation
+// level, and rho^T C rho within both bands. It can be applied to another frame under the same lights.
+typedef struct ofc_inliers {
+    // Channels at or above this are saturated.
+    double saturation;
+    // C of the first rejection, by residual: c11, c22, c33, c12, c13, c23.
+    double residual_form[6];
+    // Smallest accepted rho^T C rho.
+    double residual_low;
+    // Largest accepted rho^T C rho.
+    double residual_high;
+    // C of the second rejection, by the length of the normal.
+    double norm_form[6];
+    // Smallest accepted rho^T C rho.
+    double norm_low;
+    // Largest accepted rho^T C rho.
+    double norm_high;
+} ofc_inliers;
 
 // What C says of the color-orientation matrix F before its orthogonal transformation is known (eq. 18). Matrices are
 // row-major.
@@ -383,6 +428,15 @@ typedef struct ofc_ellipsoid {
     double cosines[3];
 } ofc_ellipsoid;
 
+// Tilts of the three channels' equivalent lights.
+typedef struct ofc_tilts {
+    // Counter-clockwise from x in (-pi, pi], for a convex surface.
+    double tilt_rad[3];
+    // Mean gradient (Ix, Iy) of each channel over the inliers, pixel values a pixel, y up: r, g, b; zero where the
+    // estimator has none.
+    double mean_gradient[6];
+} ofc_tilts;
+
 // Slants of the three channels' equivalent lights that are consistent with their tilts and angles.
 typedef struct ofc_slants {
     // From +z, in [0, pi/2].
@@ -398,6 +452,20 @@ typedef struct ofc_slants {
     // Zero.
     uint32_t reserved;
 } ofc_slants;
+
+// The color-orientation matrix F, rho = F n, row-major.
+typedef struct ofc_orientation {
+    // Row i is f_i: strength and direction of the one light that channel i could have been lit by, in pixel values.
+    double f[9];
+    // The inverse, n = f_inverse rho, over the singular values above the threshold.
+    double f_inverse[9];
+    // Singular values of F, descending.
+    double singular_values[3];
+    // How many of them are above the threshold: 3 where F can be inverted.
+    int32_t rank;
+    // Zero.
+    uint32_t reserved;
+} ofc_orientation;
 
 // What ofc_solve() found. On a positive status the fields of the stages that were not reached are zero.
 typedef struct ofc_solution {
@@ -417,6 +485,8 @@ typedef struct ofc_solution {
     struct ofc_census census;
     // The regression: C with its errors, dispersion, R^2, inliers after the first rejection.
     struct ofc_color_fit fit;
+    // Effective ranks of the colors and normals of the inliers: F can be recovered where both are 3.
+    struct ofc_rank rank;
     // Location of the lengths of the normals: the second rejection.
     struct ofc_location norm_location;
     // The test for inliers after both rejections.
@@ -432,6 +502,139 @@ typedef struct ofc_solution {
     // F and its inverse.
     struct ofc_orientation orientation;
 } ofc_solution;
+
+// How well an answer explains its own picture. How to read it:
+//
+// - `correlation` near 1 says that the linear model holds: channels relit from the recovered normals look like the input.
+//   The paper's egg reaches 0.9989; 0.99 is usual for a photograph of a matte surface. It says nothing of F's orthogonal
+//   transformation, which cancels.
+// - `tilt_residual_rad`, the tilts of F minus the tilts that Pentland's estimator finds in the input, are near zero when
+//   F follows the tilts of the picture. Large ones say that the slants are a compromise, or the surface is not convex.
+// - `tilt_difference_rad`, the same estimator on the relit picture minus on the input, is near zero when normals and
+//   lights belong together.
+// - `norm_median` is near 1 and the range narrow when most of the inliers obey the model.
+// - `largest_p` above 0.05 says that a coefficient of C could as well be zero.
+typedef struct ofc_check_result {
+    // Correlation of each channel with the relit one, over the inliers; 0 where one of them is constant.
+    double correlation[3];
+    // Median length of the recovered normals before they are set to 1.
+    double norm_median;
+    // Smallest length.
+    double norm_min;
+    // Largest length.
+    double norm_max;
+    // Pentland's tilts of the input; zero where there are none.
+    struct ofc_tilts tilts;
+    // Pentland's tilts of the relit picture; zero where there are none.
+    struct ofc_tilts relit_tilts;
+    // Tilts of the relit picture minus those of the input, in (-pi, pi]; zero where one has none.
+    double tilt_difference_rad[3];
+    // Tilts of the rows of F minus those of the input, in (-pi, pi]; zero where it has none.
+    double tilt_residual_rad[3];
+    // Largest p value of the six coefficients of C.
+    double largest_p;
+    // Pixels that were compared.
+    int32_t inlier_count;
+    // 1 when both pictures have tilts, 0 otherwise.
+    int32_t has_tilts;
+} ofc_check_result;
+
+// A disc of pixels.
+typedef struct ofc_disc {
+    // Column of the middle pixel.
+    int32_t x;
+    // Row of the middle pixel.
+    int32_t y;
+    // The disc's pixels are less than the root of this many pixels away from the middle one.
+    uint64_t radius_squared;
+} ofc_disc;
+
+// Where the statistic behind a slant lies: one of OFC_REACH_*.
+typedef int32_t ofc_reach;
+
+// The slant of one channel's light, as an estimator sees it without help from the other channels.
+typedef struct ofc_slant_estimate {
+    // From +z.
+    double slant_rad;
+    // What it was computed from: the cosine for Pentland, root mean square over mean for Lee and Rosenfeld, mean over
+    // root mean square for Zheng and Chellappa.
+    double statistic;
+    // Whether the method's equation has a root, one of OFC_REACH_*.
+    ofc_reach reach;
+    // Zero.
+    uint32_t reserved;
+} ofc_slant_estimate;
+
+// The integral (15) of normals, as a mean over cells of four inliers.
+typedef struct ofc_integrability {
+    // Mean of (dp/dy - dq/dx)^2, per pixel^2.
+    double mean;
+    // How many cells.
+    int32_t cells;
+    // Zero.
+    uint32_t reserved;
+} ofc_integrability;
+
+// What becomes of a normal's length: one of OFC_LENGTH_*.
+typedef int32_t ofc_length;
+
+// How ofc_orthogonal_annealing() searches. Set by ofc_annealing_params_default().
+typedef struct ofc_annealing_params {
+    // Temperature at the start and at the end of a chain, relative, > 0. Default 1 and 0.01.
+    double temperatures[2];
+    // Largest angle of a proposal at the start and at the end of a chain, radians, > 0. Default 2 and 0.02.
+    double angles_rad[2];
+    // Fixes every random choice. Default 0.
+    uint64_t seed;
+    // Proposals in all, 1 to 10,000,000. Default 4000.
+    uint32_t proposals;
+    // Chains that share them, at least 1. Default 8.
+    uint32_t chains;
+    // Cells that proposals are judged on, at least 1. Default 2000.
+    uint32_t sample_cells;
+    // Times that the polish may compute (15) over the whole picture, up to 10,000,000. Default 60.
+    uint32_t polish_evaluations;
+    // Must be zero.
+    uint32_t reserved[4];
+} ofc_annealing_params;
+
+// One member of O(3) and the F that follows from it. Matrices are row-major.
+typedef struct ofc_transformation {
+    // r1, r2, r3: n = rows G0 rho; the determinant is 1 or -1.
+    double rows[9];
+    // F = G0^-1 rows^T, in pixel values.
+    double f[9];
+    // F^-1 = rows G0.
+    double f_inverse[9];
+    // Tilts of the rows of F in (-pi, pi].
+    double tilt_rad[3];
+    // Slants of the rows of F; one above pi/2 is no light of the paper's.
+    double slant_rad[3];
+} ofc_transformation;
+
+// What chose between the convex/concave twins: one of OFC_TWIN_*.
+typedef int32_t ofc_twin_choice;
+
+// A minimum of the integral (15), and its convex/concave twin, whose integral is the same (section 2.4).
+typedef struct ofc_orthogonal {
+    // The one of the two that was chosen.
+    struct ofc_transformation chosen;
+    // The other: rows r1 and r2 with the other sign.
+    struct ofc_transformation twin;
+    // How clear the choice is, from 0 (equally good) to 1.
+    double clarity;
+    // The integral of both.
+    struct ofc_integrability integral;
+    // The same before the polish on the whole picture.
+    struct ofc_integrability unpolished;
+    // What chose, one of OFC_TWIN_*.
+    ofc_twin_choice choice;
+    // Times the integral was computed over the whole picture.
+    uint32_t evaluations;
+} ofc_orthogonal;
+
+// How C is fitted: one of OFC_FIT_*.
+typedef int32_t ofc_fit_method;
 
 // How the regression in color space searches and what it rejects. Set by ofc_lmeds_params_default().
 typedef struct ofc_lmeds_params {
@@ -454,8 +657,10 @@ typedef struct ofc_lmeds_params {
     uint32_t subsets;
     // Pixels that the search looks at, at least 12; the result is judged on all. Default 10,000.
     uint32_t sample_size;
+    // OFC_FIT_LEAST_MEDIAN or OFC_FIT_LEAST_SQUARES. Default OFC_FIT_LEAST_MEDIAN.
+    ofc_fit_method method;
     // Must be zero.
-    uint32_t reserved[5];
+    uint32_t reserved[4];
 } ofc_lmeds_params;
 
 // What ofc_render() adds to eq. 5. Set by ofc_render_params_default().
@@ -513,18 +718,70 @@ typedef struct ofc_rendering {
     double f[9];
 } ofc_rendering;
 
+// How ofc_segment() works. Set by ofc_segment_params_default().
+typedef struct ofc_segment_params {
+    // Largest |rho^T C rho - 1| within a region, in (0, 1). Default 0.1: colors within 5 % of the ellipsoid.
+    double tolerance;
+    // A pixel is saturated if a channel is at or above this; 0 as in ofc_lmeds_params. Default 0.
+    double saturation;
+    // Fixes every random choice. Default 0.
+    uint64_t seed;
+    // Smaller regions are dropped, pixels, at least 12. Default 200.
+    uint32_t min_pixels;
+    // At most this many regions, 1 to OFC_MAX_REGIONS. Default 8.
+    uint32_t max_regions;
+    // Blocks of six pixels that are tried for each region, 1 to 1,000,000. Default 300.
+    uint32_t blocks;
+    // Distance between the pixels of a block, up to 64; 0 for 1, 2, 4, 8 and 16 in turn. Default 0.
+    uint32_t spacing;
+    // How far around a block its C is tried, 1 to 1000 pixels. Default 24.
+    uint32_t reach;
+    // Times that a region is fitted and grown again, up to 100. Default 12.
+    uint32_t refits;
+    // Must be zero.
+    uint32_t reserved[4];
+} ofc_segment_params;
+
+// One region of pixels that share a C.
+typedef struct ofc_region {
+    // C over its pixels: c11, c22, c33, c12, c13, c23 in (pixel value)^-2.
+    double coefficients[6];
+    // Standard deviation of the residuals.
+    double residual_deviation;
+    // Ranks of its colors and normals.
+    struct ofc_rank rank;
+    // How many pixels.
+    int32_t pixel_count;
+    // Its value in the label map, from 1 on.
+    int32_t label;
+    // Column and row of the top left pixel of the block that it began at.
+    int32_t block[2];
+    // Distance between the pixels of that block.
+    int32_t spacing;
+    // Zero.
+    uint32_t reserved;
+} ofc_region;
+
+// An estimator of tilts, for ofc_solve_params: one of OFC_TILT_*.
+typedef int32_t ofc_tilt_estimator;
+
+// What to do where eqs. 25 have no root: one of OFC_FALLBACK_*.
+typedef int32_t ofc_slant_fallback;
+
 // What ofc_solve() does. Set by ofc_solve_params_default().
 typedef struct ofc_solve_params {
     // The regression in color space, with the seed and the saturation level.
     struct ofc_lmeds_params lmeds;
     // Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
     double rank_threshold;
-    // Where eqs. 25 have no root, 0: refuse; 1: take the slants that satisfy eqs. 24 best; 2: take those that make the
-    // integral (15) smallest among the ones that eqs. 24 do not rule out; 3, 4, 5: Pentland's, Lee and Rosenfeld's,
-    // Zheng and Chellappa's. Default 1.
-    int32_t slant_fallback;
+    // The tilts of the rows of F, for OFC_TILT_GIVEN; otherwise they do not matter. Default 0.
+    double tilt_rad[3];
+    // Where the tilts come from, one of OFC_TILT_*. Default OFC_TILT_PENTLAND.
+    ofc_tilt_estimator tilt_estimator;
+    // What to do where eqs. 25 have no root, one of OFC_FALLBACK_*. Default OFC_FALLBACK_LEAST_SQUARES.
+    ofc_slant_fallback slant_fallback;
     // Must be zero.
-    uint32_t reserved[7];
+    uint32_t reserved[6];
 } ofc_solve_params;
 
 
@@ -532,6 +789,43 @@ typedef struct ofc_solve_params {
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
+
+// Bytes of workspace that ofc_check() needs: 4 a pixel.
+//
+// @return The size, or 0 when an argument is invalid.
+size_t ofc_check_workspace_size(int32_t width, int32_t height);
+
+// Checks a solution against its own picture; the struct says how to read the result.
+//
+// @param image      The picture that was solved, or another frame under the same lights.
+// @param solution   What ofc_solve() wrote with OFC_STATUS_OK.
+// @param workspace  ofc_check_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter.
+// @param workspace_bytes  Its size.
+// @param result     Output.
+// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_TOO_FEW_PIXELS when there are no inliers; the status of an
+//         invalid argument.
+//
+// Reference: sections 4-6.
+ofc_status ofc_check(const struct ofc_image *image,
+                     const struct ofc_solution *solution,
+                     void *workspace,
+                     size_t workspace_bytes,
+                     struct ofc_check_result *result);
+
+// The effective ranks of a picture's colors and normals.
+//
+// @param image    The picture.
+// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+// @param fit      The regression over them, from ofc_lmeds_fit(); NULL where it was refused.
+// @param rank     Output.
+// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS when there is no inlier; OFC_STATUS_INVALID_PARAMETER for a fit that
+//         is not finite; the status of an invalid argument.
+//
+// Reference: sections 2 and 6; A. P. Petrov, L. L. Kontsevich, JOSA A 11, 1994.
+ofc_status ofc_rank_compute(const struct ofc_image *image,
+                            const struct ofc_inliers *inliers,
+                            const struct ofc_color_fit *fit,
+                            struct ofc_rank *rank);
 
 // Pentland's tilts of the three channels' equivalent lights, from mean differences between neighbouring inliers along
 // the axes and diagonals; for a closed convex surface.
@@ -545,6 +839,130 @@ extern "C" {
 ofc_status ofc_tilt_pentland(const struct ofc_image *image,
                              const struct ofc_inliers *inliers,
                              struct ofc_tilts *tilts);
+
+// Pentland's tilts along any set of directions.
+//
+// @param image    The picture.
+// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+// @param steps    `count` pairs (right, up): the step from one pixel of a pair to the other, up to 1024 either way.
+// @param count    How many, 2 to 64; not all parallel.
+// @param tilts    Output.
+// @return OFC_STATUS_OK; OFC_STATUS_NO_TILT, `tilts` untouched, also for steps that are zero, too long or parallel;
+//         OFC_STATUS_INVALID_PARAMETER for a bad count; the status of an invalid argument.
+//
+// Reference: section 3.2, eqs. 20-21.
+ofc_status ofc_tilt_pentland_along(const struct ofc_image *image,
+                                   const struct ofc_inliers *inliers,
+                                   const int32_t *steps,
+                                   int32_t count,
+                                   struct ofc_tilts *tilts);
+
+// Lee and Rosenfeld's tilts: Pentland's with the axes alone.
+//
+// @param image    The picture.
+// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+// @param tilts    Output.
+// @return As ofc_tilt_pentland().
+//
+// Reference: section 3.2; C.-H. Lee, A. Rosenfeld, Artificial Intelligence 26, 1985.
+ofc_status ofc_tilt_lee_rosenfeld(const struct ofc_image *image,
+                                  const struct ofc_inliers *inliers,
+                                  struct ofc_tilts *tilts);
+
+// Zheng and Chellappa's tilts: every neighbourhood votes with the direction of its own gradient.
+//
+// @param image    The picture.
+// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+// @param tilts    Output.
+// @return As ofc_tilt_pentland().
+//
+// Reference: Q. Zheng, R. Chellappa, "Estimation of illuminant direction, albedo, and shape from shading", PAMI 13,
+// 1991.
+ofc_status ofc_tilt_zheng_chellappa(const struct ofc_image *image,
+                                    const struct ofc_inliers *inliers,
+                                    struct ofc_tilts *tilts);
+
+// Chojnacki, Brooks and Gibbins' tilts: mean derivatives over a disc that is free of shadows.
+//
+// @param image    The picture.
+// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+// @param disc     The disc, given or found by ofc_largest_disc().
+// @param tilts    Output.
+// @return As ofc_tilt_pentland(); OFC_STATUS_INVALID_PARAMETER for a disc whose middle has a negative coordinate.
+//
+// Reference: W. Chojnacki, M. J. Brooks, D. Gibbins, "Revisiting Pentland's estimator of light source direction", JOSA
+// A 11, 1994.
+ofc_status ofc_tilt_chojnacki(const struct ofc_image *image,
+                              const struct ofc_inliers *inliers,
+                              const struct ofc_disc *disc,
+                              struct ofc_tilts *tilts);
+
+// Bytes of workspace that ofc_largest_disc() needs: 4 a pixel.
+//
+// @return The size, or 0 when an argument is invalid.
+size_t ofc_largest_disc_workspace_size(int32_t width, int32_t height);
+
+// The largest disc inside the inliers; outliers that are not part of a square of four do not count.
+//
+// @param image      The picture.
+// @param inliers    The pixels to use; NULL for every usable pixel of the picture.
+// @param workspace  ofc_largest_disc_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter.
+// @param workspace_bytes  Its size.
+// @param disc       Output.
+// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS when there is no inlier; the status of an invalid argument.
+ofc_status ofc_largest_disc(const struct ofc_image *image,
+                            const struct ofc_inliers *inliers,
+                            void *workspace,
+                            size_t workspace_bytes,
+                            struct ofc_disc *disc);
+
+// Pentland's slants, each channel for itself: the paper's Tables show how unreliable they are.
+//
+// @param image    The picture.
+// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+// @param slants   Output: three structs, r, g, b.
+// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS; the status of an invalid argument.
+//
+// Reference: section 3.2, eq. 22.
+ofc_status ofc_slant_pentland(const struct ofc_image *image,
+                              const struct ofc_inliers *inliers,
+                              struct ofc_slant_estimate *slants);
+
+// Lee and Rosenfeld's slants, in [0, pi), from the ratio of root mean square to mean; below 3 / (2 sqrt 2) = 1.0607 the
+// answer is 0 with OFC_REACH_BELOW_ZERO.
+//
+// @param image    The picture.
+// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+// @param slants   Output: three structs, r, g, b.
+// @return As ofc_slant_pentland().
+//
+// Reference: section 3.2, eq. 23.
+ofc_status ofc_slant_lee_rosenfeld(const struct ofc_image *image,
+                                   const struct ofc_inliers *inliers,
+                                   struct ofc_slant_estimate *slants);
+
+// Zheng and Chellappa's slants, which take shadows into account: the pixels are those of the picture's mask, black ones
+// included.
+//
+// @param image    The picture; its mask is the object.
+// @param slants   Output: three structs, r, g, b.
+// @return As ofc_slant_pentland().
+//
+// Reference: Q. Zheng, R. Chellappa, PAMI 13, 1991.
+ofc_status ofc_slant_zheng_chellappa(const struct ofc_image *image,
+                                     struct ofc_slant_estimate *slants);
+
+// The largest value of each channel: the lengths of the rows of F where some normal faces each light.
+//
+// @param image    The picture.
+// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+// @param norms    Output: three numbers, r, g, b.
+// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS when there is no inlier; the status of an invalid argument.
+//
+// Reference: section 4, last rows of Tables 1 and 2.
+ofc_status ofc_channel_maxima(const struct ofc_image *image,
+                              const struct ofc_inliers *inliers,
+                              double *norms);
 
 // F from the lengths, tilts and slants of its rows, and its inverse through the singular values.
 //
@@ -612,6 +1030,99 @@ ofc_status ofc_normals_compute(const struct ofc_image *image,
                                const struct ofc_solution *solution,
                                float *normals,
                                size_t normals_stride_bytes);
+
+// Sets every field to its default.
+//
+// @param params  Output.
+// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+ofc_status ofc_annealing_params_default(struct ofc_annealing_params *params);
+
+// Bytes of workspace that ofc_orthogonal_annealing() needs: 36 for each cell that proposals are judged on.
+//
+// @return The size, or 0 when an argument is invalid.
+size_t ofc_orthogonal_annealing_workspace_size(int32_t width,
+                                               int32_t height,
+                                               const struct ofc_annealing_params *params);
+
+// The orthogonal transformation that minimises the integral (15) over O(3), by seeded simulated annealing on a sample of
+// cells and a polish on the whole picture.
+//
+// @param image      The picture.
+// @param inliers    The pixels to use; NULL for every usable pixel of the picture.
+// @param root       G0 of ofc_ellipsoid, row-major.
+// @param tilt_rad   Three tilts that choose between the convex and the concave twin; NULL for the convex one.
+// @param params     See the struct.
+// @param workspace  ofc_orthogonal_annealing_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do
+//                   not matter.
+// @param workspace_bytes  Its size.
+// @param found      Output.
+// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; OFC_STATUS_INVALID_PARAMETER, also for a root without an inverse; the
+//         status of an invalid argument.
+//
+// Reference: section 2.3, eqs. 13-15; L. L. Kontsevich, A. P. Petrov, I. S. Vergelskaya, JOSA A 11, 1994.
+ofc_status ofc_orthogonal_annealing(const struct ofc_image *image,
+                                    const struct ofc_inliers *inliers,
+                                    const double *root,
+                                    const double *tilt_rad,
+                                    const struct ofc_annealing_params *params,
+                                    void *workspace,
+                                    size_t workspace_bytes,
+                                    struct ofc_orthogonal *found);
+
+// The orthogonal transformation in closed form: the smoothness condition (16) gives r3 as an eigenvector, and the one
+// angle that is left follows from (15); then a polish on (15).
+//
+// @param image      The picture.
+// @param inliers    The pixels to use; NULL for every usable pixel of the picture.
+// @param root       G0 of ofc_ellipsoid, row-major.
+// @param tilt_rad   Three tilts that choose between the convex and the concave twin; NULL for the convex one.
+// @param polish_evaluations  Times that the polish may compute (15) over the picture, up to 10,000,000: 0 for the bare
+//                   closed form, 60 for what solve and annealing do.
+// @param found      Output.
+// @return As ofc_orthogonal_annealing().
+//
+// Reference: section 2.3, eq. 16; M. S. Drew, L. L. Kontsevich, "Closed-form attitude determination under spectrally
+// varying illumination", CVPR 1994.
+ofc_status ofc_orthogonal_closed_form(const struct ofc_image *image,
+                                      const struct ofc_inliers *inliers,
+                                      const double *root,
+                                      const double *tilt_rad,
+                                      uint32_t polish_evaluations,
+                                      struct ofc_orthogonal *found);
+
+// Bytes of workspace that ofc_constrained_slants_integrable() needs: 36 for each cell.
+//
+// @return The size, or 0 when an argument is invalid.
+size_t ofc_constrained_slants_integrable_workspace_size(int32_t width, int32_t height, uint32_t sample_cells);
+
+// The slants that make the integral (15) smallest, given the tilts and norms of the rows of F, among those that eqs. 24
+// do not rule out: section 3.3's other answer where eqs. 25 have no root.
+//
+// @param image         The picture.
+// @param inliers       The pixels to use; NULL for every usable pixel of the picture.
+// @param norms         Lengths of the rows of F, > 0.
+// @param tilt_rad      Their tilts.
+// @param cosines       (h12, h13, h23), each in [-1, 1].
+// @param slack         How far the root mean square residual of eqs. 24 may be above the smallest, >= 0; 0.05 is what
+//                      solve uses.
+// @param sample_cells  Cells that slants are judged on, at least 1; 2000 is what solve uses.
+// @param workspace     ofc_constrained_slants_integrable_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT;
+//                      contents do not matter.
+// @param workspace_bytes  Its size.
+// @param slants        Output: `residual` is the root mean square residual of eqs. 24, the branch is 0.
+// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+//
+// Reference: section 3.3.
+ofc_status ofc_constrained_slants_integrable(const struct ofc_image *image,
+                                             const struct ofc_inliers *inliers,
+                                             const double *norms,
+                                             const double *tilt_rad,
+                                             const double *cosines,
+                                             double slack,
+                                             uint32_t sample_cells,
+                                             void *workspace,
+                                             size_t workspace_bytes,
+                                             struct ofc_slants *slants);
 
 // Sets every field to its default.
 //
@@ -769,6 +1280,73 @@ ofc_status ofc_render(const struct ofc_depth_map *depth,
                       float *normals,
                       size_t normals_stride_bytes,
                       struct ofc_rendering *rendering);
+
+// Sets every field to its default.
+//
+// @param params  Output.
+// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+ofc_status ofc_segment_params_default(struct ofc_segment_params *params);
+
+// Bytes of workspace that ofc_segment() needs: 16 a pixel.
+//
+// @return The size, or 0 when an argument is invalid.
+size_t ofc_segment_workspace_size(int32_t width, int32_t height);
+
+// Finds regions that share a C: each begins at six contiguous pixels and grows as far as the tolerance allows. Where a
+// picture holds more than one material or light environment, this comes before ofc_solve(), which is pointed at one
+// region by ofc_segment_mark() and the picture's mask.
+//
+// @param image      The picture.
+// @param params     See the struct.
+// @param workspace  ofc_segment_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter.
+// @param workspace_bytes  Its size.
+// @param labels     Output: width x height labels, rows without gaps: 0, or that of the pixel's region.
+// @param regions    Output: OFC_MAX_REGIONS structs, of which the first `count` are written, in the order found.
+// @param count      Output; no region is no error.
+// @return OFC_STATUS_OK or the status of an invalid argument.
+//
+// Stack: below 24 KiB. Reference: section 1.2; L. L. Kontsevich, A. P. Petrov, I. S. Vergelskaya, JOSA A 11, 1994.
+ofc_status ofc_segment(const struct ofc_image *image,
+                       const struct ofc_segment_params *params,
+                       void *workspace,
+                       size_t workspace_bytes,
+                       uint16_t *labels,
+                       struct ofc_region *regions,
+                       int32_t *count);
+
+// Turns one label into a mask for ofc_image: 255 where a pixel has it, 0 elsewhere.
+//
+// @param labels  width x height labels, rows without gaps.
+// @param width   Pixels in a row.
+// @param height  Rows.
+// @param label   1 to 65535.
+// @param mask    Output: width x height bytes, rows without gaps.
+// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER for a label out of range; the status of an invalid argument.
+ofc_status ofc_segment_mark(const uint16_t *labels,
+                            int32_t width,
+                            int32_t height,
+                            int32_t label,
+                            uint8_t *mask);
+
+// Patches in a row (and, with height for width, in a column) of a picture: width over side, rounded up; 0 for a width
+// or side that is not positive.
+int32_t ofc_rank_patches_count(int32_t width,
+                               int32_t side);
+
+// Classifies a picture's patches by the rank of their colors.
+//
+// @param image  The picture.
+// @param side   Side of a patch, 3 to 64 pixels; patches at the right and lower edges may be smaller.
+// @param noise  Standard deviation of a channel in pixel values, > 0; ofc_rank has it.
+// @param ranks  Output: ofc_rank_patches_count() a row and a column, rows without gaps: 1 to 3, or 0 where fewer than
+//               half of the pixels are usable.
+// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+//
+// Reference: section 1.2; A. P. Petrov, L. L. Kontsevich, JOSA A 11, 1994.
+ofc_status ofc_rank_patches(const struct ofc_image *image,
+                            int32_t side,
+                            double noise,
+                            uint8_t *ranks);
 
 // All slants in [0, pi/2] that are consistent with three tilts and the angles between the rows of F: every solution of
 // eqs. 24, on all eight branches of eqs. 25.

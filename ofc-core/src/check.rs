@@ -25,7 +25,7 @@ use crate::normals::{Length, normal};
 use crate::orientation::Orientation;
 use crate::regression::{Estimate, TERMS};
 use crate::select::{kth_smallest, median_rank};
-use crate::tilt::pentland::{self, Tilts};
+use crate::tilt::{Tilts, pentland};
 use core::f64::consts::{PI, TAU};
 use libm::{atan2, sqrt};
 

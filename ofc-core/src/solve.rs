@@ -13,7 +13,7 @@ use crate::lmeds::{self, Fit, FitError, Method};
 use crate::location::{self, Location};
 use crate::orientation::{self, Orientation, RANK_THRESHOLD};
 use crate::rank::{self, Rank};
-use crate::tilt::pentland::{self, Tilts};
+use crate::tilt::{TiltEstimator, Tilts};
 use heapless::Vec;
 
 /// The noise that would make a degenerate scene look like this one must be so many times the noise there is. Degenerate
@@ -29,6 +29,8 @@ pub struct Params {
     /// A pixel is saturated if a channel is at or above this; `None` for the largest value of the pixel type, and no
     /// limit for f32. Default `None`.
     pub saturation: Option<f32>,
+    /// Where the tilts come from. Default [`TiltEstimator::Pentland`].
+    pub tilts: TiltEstimator,
     /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
     pub rank_threshold: f64,
     /// Where the slants come from when eqs. 25 have no root. Default [`SlantFallback::LeastSquares`].
@@ -40,6 +42,7 @@ impl Default for Params {
         Self {
             lmeds: lmeds::Params::default(),
             saturation: None,
+            tilts: TiltEstimator::Pentland,
             rank_threshold: RANK_THRESHOLD,
             fallback: SlantFallback::LeastSquares,
         }
@@ -53,6 +56,10 @@ impl Params {
         self.lmeds.subset_count().is_some()
             && self.saturation.is_none_or(|level| level > 0.0)
             && (0.0..1.0).contains(&self.rank_threshold)
+            && match self.tilts {
+                TiltEstimator::Given(tilts) => tilts.iter().all(|tilt| tilt.is_finite()),
+                _ => true,
+            }
     }
 
     /// Which pixels of `image` can be used.
@@ -143,7 +150,7 @@ pub struct Solution {
     pub inlier_count: usize,
     /// C, its root, and the norms and angles of the rows of F.
     pub ellipsoid: Option<Ellipsoid>,
-    /// Pentland's tilts.
+    /// The tilts of the rows of F.
     pub tilts: Option<Tilts>,
     /// Slants and F.
     pub choice: Option<Choice>,
@@ -228,7 +235,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
 
     solution.outcome = Outcome::NoTilt;
     let inliers = solution.inliers;
-    solution.tilts = pentland::tilts(image, |window| inliers.bits(window));
+    solution.tilts = params.tilts.estimate(image, &inliers, workspace);
     let Some(Tilts { tilts, .. }) = solution.tilts else { return Ok(solution) };
 
     solution.outcome = Outcome::NoConsistentSlants;

@@ -5,22 +5,30 @@
 #![allow(clippy::missing_safety_doc)] // The documentation is for C callers: every call says what it needs.
 #![allow(clippy::doc_markdown)] // As above: names are not Rust links.
 
+mod check;
 mod image;
+mod light;
 mod orientation;
+mod orthogonal;
 mod pointers;
 mod regression;
 mod render;
+mod segment;
 mod slants;
 mod solve;
 mod status;
 mod types;
 mod version;
 
+pub use check::*;
 pub use image::*;
+pub use light::*;
 pub use orientation::*;
+pub use orthogonal::*;
 pub use pointers::OFC_WORKSPACE_ALIGNMENT;
 pub use regression::*;
 pub use render::*;
+pub use segment::*;
 pub use slants::*;
 pub use solve::*;
 pub use status::*;

@@ -5,17 +5,16 @@ use crate::pointers::{Out, disjoint, extent, input, input_array, output_slice};
 use crate::regression::accepted_by;
 use crate::solve::ofc_solution;
 use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_NO_CELLS, OFC_STATUS_NO_TILT,
-    OFC_STATUS_NOT_SOLVED, OFC_STATUS_OK, OFC_STATUS_RANK_DEFICIENT, of, of_image_error, ofc_status,
+    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_NO_CELLS, OFC_STATUS_NOT_SOLVED,
+    OFC_STATUS_OK, OFC_STATUS_RANK_DEFICIENT, of, of_image_error, ofc_status,
 };
-use crate::types::{ofc_inliers, ofc_integrability, ofc_orientation, ofc_tilts, unflat};
+use crate::types::{finite_matrix, ofc_inliers, ofc_integrability, ofc_orientation};
 use ofc_core::image::span;
 use ofc_core::inliers::Inliers;
 use ofc_core::integrability;
 use ofc_core::mat3::Mat3;
 use ofc_core::normals::{self, Length};
 use ofc_core::orientation::{Orientation, compose};
-use ofc_core::tilt::pentland;
 
 /// What becomes of a normal's length: one of OFC_LENGTH_*.
 pub type ofc_length = i32;
@@ -23,35 +22,6 @@ pub type ofc_length = i32;
 pub const OFC_LENGTH_UNIT: i32 = 0;
 /// As the color gives it: near 1 where the model holds.
 pub const OFC_LENGTH_KEPT: i32 = 1;
-
-/// Pentland's tilts of the three channels' equivalent lights, from mean differences between neighbouring inliers along
-/// the axes and diagonals; for a closed convex surface.
-///
-/// @param image    The picture.
-/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
-/// @param tilts    Output.
-/// @return OFC_STATUS_OK; OFC_STATUS_NO_TILT, `tilts` untouched; the status of an invalid argument.
-///
-/// Reference: section 3.2, eqs. 20-21; A. P. Pentland, "Finding the illuminant direction", JOSA 72, 1982.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn ofc_tilt_pentland(
-    image: *const ofc_image,
-    inliers: *const ofc_inliers,
-    tilts: *mut ofc_tilts,
-) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (test, test_extent) = accepted_by(inliers, &picture)?;
-        let out = Out::new(tilts)?;
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(&[out.extent], &[a, b, c, d, e, test_extent])?;
-        let found = pentland::tilts(&picture.view, |window| test.bits(window)).ok_or(OFC_STATUS_NO_TILT)?;
-        out.write(found.into());
-        Ok(OFC_STATUS_OK)
-    };
-    of(body())
-}
 
 /// F from the lengths, tilts and slants of its rows, and its inverse through the singular values.
 ///
@@ -87,14 +57,6 @@ pub unsafe extern "C" fn ofc_orientation_compose(
         Ok(if orientation.rank == 3 { OFC_STATUS_OK } else { OFC_STATUS_RANK_DEFICIENT })
     };
     of(body())
-}
-
-fn finite_matrix(values: [f64; 9]) -> Result<Mat3, ofc_status> {
-    if values.iter().all(|value| value.is_finite()) {
-        Ok(unflat(values))
-    } else {
-        Err(OFC_STATUS_INVALID_PARAMETER)
-    }
 }
 
 /// The integral (15), mean of (dp/dy - dq/dx)^2 over cells of four inliers, for the normals that F^-1 makes: how far

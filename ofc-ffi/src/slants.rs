@@ -15,7 +15,7 @@ const _: () =
     assert!(OFC_MAX_CANDIDATES == constrained_slant::MAX_CANDIDATES, "the header says what the core does");
 
 /// A tilt is any finite angle, a cosine is in [-1, 1].
-fn are_valid(tilts: [f64; 3], cosines: [f64; 3]) -> Result<(), ofc_status> {
+pub(crate) fn are_valid(tilts: [f64; 3], cosines: [f64; 3]) -> Result<(), ofc_status> {
     let valid = tilts.iter().all(|tilt| tilt.is_finite()) && cosines.iter().all(|h| (-1.0..=1.0).contains(h));
     if valid { Ok(()) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
 }

@@ -1,6 +1,11 @@
 //! The whole pipeline.
 
+use crate::check::ofc_rank;
 use crate::image::{image, ofc_image};
+use crate::light::{
+    OFC_TILT_CHOJNACKI, OFC_TILT_GIVEN, OFC_TILT_LEE_ROSENFELD, OFC_TILT_PENTLAND, OFC_TILT_ZHENG_CHELLAPPA,
+    ofc_tilt_estimator,
+};
 use crate::pointers::{Extent, Out, Plain, disjoint, extent, input, output_slice, workspace};
 use crate::regression::{float_bytes, floats, pixel_count};
 use crate::slants::OFC_MAX_CANDIDATES;
@@ -14,6 +19,7 @@ use crate::types::{
 };
 use core::ffi::c_void;
 use ofc_core::solve::{self, Candidate, Params, SlantFallback, SlantSource, Solution};
+use ofc_core::tilt::TiltEstimator;
 
 /// Where the slants come from: one of OFC_SLANTS_*.
 pub type ofc_slant_source = i32;
@@ -32,6 +38,21 @@ pub const OFC_SLANTS_LEE_ROSENFELD: i32 = 5;
 /// There is no root: Zheng and Chellappa's slants.
 pub const OFC_SLANTS_ZHENG_CHELLAPPA: i32 = 6;
 
+/// What to do where eqs. 25 have no root: one of OFC_FALLBACK_*.
+pub type ofc_slant_fallback = i32;
+/// Return OFC_STATUS_NO_CONSISTENT_SLANTS.
+pub const OFC_FALLBACK_REFUSE: i32 = 0;
+/// Take the slants that satisfy eqs. 24 best.
+pub const OFC_FALLBACK_LEAST_SQUARES: i32 = 1;
+/// Take those that make the integral (15) smallest among the ones that eqs. 24 do not rule out.
+pub const OFC_FALLBACK_TILT_INTEGRABILITY: i32 = 2;
+/// Take Pentland's, eq. 22.
+pub const OFC_FALLBACK_PENTLAND: i32 = 3;
+/// Take Lee and Rosenfeld's, eq. 23.
+pub const OFC_FALLBACK_LEE_ROSENFELD: i32 = 4;
+/// Take Zheng and Chellappa's.
+pub const OFC_FALLBACK_ZHENG_CHELLAPPA: i32 = 5;
+
 /// What ofc_solve() does. Set by ofc_solve_params_default().
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -40,12 +61,14 @@ pub struct ofc_solve_params {
     pub lmeds: ofc_lmeds_params,
     /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
     pub rank_threshold: f64,
-    /// Where eqs. 25 have no root, 0: refuse; 1: take the slants that satisfy eqs. 24 best; 2: take those that make the
-    /// integral (15) smallest among the ones that eqs. 24 do not rule out; 3, 4, 5: Pentland's, Lee and Rosenfeld's,
-    /// Zheng and Chellappa's. Default 1.
-    pub slant_fallback: i32,
+    /// The tilts of the rows of F, for OFC_TILT_GIVEN; otherwise they do not matter. Default 0.
+    pub tilt_rad: [f64; 3],
+    /// Where the tilts come from, one of OFC_TILT_*. Default OFC_TILT_PENTLAND.
+    pub tilt_estimator: ofc_tilt_estimator,
+    /// What to do where eqs. 25 have no root, one of OFC_FALLBACK_*. Default OFC_FALLBACK_LEAST_SQUARES.
+    pub slant_fallback: ofc_slant_fallback,
     /// Must be zero.
-    pub reserved: [u32; 7],
+    pub reserved: [u32; 6],
 }
 
 /// What ofc_solve() found. On a positive status the fields of the stages that were not reached are zero.
@@ -68,6 +91,8 @@ pub struct ofc_solution {
     pub census: ofc_census,
     /// The regression: C with its errors, dispersion, R^2, inliers after the first rejection.
     pub fit: ofc_color_fit,
+    /// Effective ranks of the colors and normals of the inliers: F can be recovered where both are 3.
+    pub rank: ofc_rank,
     /// Location of the lengths of the normals: the second rejection.
     pub norm_location: ofc_location,
     /// The test for inliers after both rejections.
@@ -91,26 +116,41 @@ unsafe impl Plain for ofc_solution {}
 
 impl ofc_solve_params {
     fn defaults() -> Self {
-        let Params { lmeds: _, saturation: _, rank_threshold, fallback: _ } = Params::default();
-        Self { lmeds: ofc_lmeds_params::defaults(), rank_threshold, slant_fallback: 1, reserved: [0; 7] }
+        let Params { lmeds: _, saturation: _, tilts: _, rank_threshold, fallback: _ } = Params::default();
+        Self {
+            lmeds: ofc_lmeds_params::defaults(),
+            rank_threshold,
+            tilt_rad: [0.0; 3],
+            tilt_estimator: OFC_TILT_PENTLAND,
+            slant_fallback: OFC_FALLBACK_LEAST_SQUARES,
+            reserved: [0; 6],
+        }
     }
 
     fn check(self) -> Result<Params, ofc_status> {
-        let Self { lmeds, rank_threshold, slant_fallback, reserved } = self;
-        if reserved != [0; 7] {
+        let Self { lmeds, rank_threshold, tilt_rad, tilt_estimator, slant_fallback, reserved } = self;
+        if reserved != [0; 6] {
             return Err(OFC_STATUS_RESERVED_NOT_ZERO);
         }
         let (lmeds, saturation) = lmeds.check()?;
         let fallback = match slant_fallback {
-            0 => SlantFallback::Refuse,
-            1 => SlantFallback::LeastSquares,
-            2 => SlantFallback::TiltIntegrability,
-            3 => SlantFallback::PentlandSlant,
-            4 => SlantFallback::LeeRosenfeldSlant,
-            5 => SlantFallback::ZhengChellappaSlant,
+            OFC_FALLBACK_REFUSE => SlantFallback::Refuse,
+            OFC_FALLBACK_LEAST_SQUARES => SlantFallback::LeastSquares,
+            OFC_FALLBACK_TILT_INTEGRABILITY => SlantFallback::TiltIntegrability,
+            OFC_FALLBACK_PENTLAND => SlantFallback::PentlandSlant,
+            OFC_FALLBACK_LEE_ROSENFELD => SlantFallback::LeeRosenfeldSlant,
+            OFC_FALLBACK_ZHENG_CHELLAPPA => SlantFallback::ZhengChellappaSlant,
             _ => return Err(OFC_STATUS_INVALID_PARAMETER),
         };
-        let params = Params { lmeds, saturation, rank_threshold, fallback };
+        let tilts = match tilt_estimator {
+            OFC_TILT_PENTLAND => TiltEstimator::Pentland,
+            OFC_TILT_LEE_ROSENFELD => TiltEstimator::LeeRosenfeld,
+            OFC_TILT_ZHENG_CHELLAPPA => TiltEstimator::ZhengChellappa,
+            OFC_TILT_CHOJNACKI => TiltEstimator::Chojnacki,
+            OFC_TILT_GIVEN => TiltEstimator::Given(tilt_rad),
+            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
+        };
+        let params = Params { lmeds, saturation, tilts, rank_threshold, fallback };
         if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
     }
 }
@@ -128,7 +168,7 @@ impl From<&Solution> for ofc_solution {
             outcome,
             census,
             color_deviations,
-            rank: _,
+            rank,
             fit,
             norm_location,
             inliers,
@@ -147,6 +187,7 @@ impl From<&Solution> for ofc_solution {
             reserved: 0,
             census: (*census).into(),
             fit: fit.map_or(unfitted, ofc_color_fit::from),
+            rank: rank.map_or(ofc_rank::default(), ofc_rank::from),
             norm_location: norm_location.map_or(ofc_location::default(), ofc_location::from),
             inliers: (*inliers).into(),
             ellipsoid: ellipsoid.map_or(ofc_ellipsoid::default(), ofc_ellipsoid::from),

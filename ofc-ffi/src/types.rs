@@ -10,7 +10,7 @@ use ofc_core::location::Location;
 use ofc_core::mat3::Mat3;
 use ofc_core::orientation::Orientation;
 use ofc_core::regression::Estimate;
-use ofc_core::tilt::pentland::Tilts;
+use ofc_core::tilt::Tilts;
 use ofc_core::{ellipsoid::Ellipsoid, integrability::Integrability};
 
 macro_rules! plain {
@@ -44,10 +44,26 @@ pub(crate) fn unflat([a, b, c, d, e, f, g, h, i]: [f64; 9]) -> Mat3 {
     [[a, b, c], [d, e, f], [g, h, i]]
 }
 
+/// A 3x3 matrix from C, row-major, of finite numbers.
+pub(crate) fn finite_matrix(values: [f64; 9]) -> Result<Mat3, ofc_status> {
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(unflat(values))
+    } else {
+        Err(OFC_STATUS_INVALID_PARAMETER)
+    }
+}
+
 /// A number of pixels; pictures hold no more than 2^31 - 1.
 pub(crate) fn count(pixels: usize) -> i32 {
     i32::try_from(pixels).unwrap_or(i32::MAX)
 }
+
+/// How C is fitted: one of OFC_FIT_*.
+pub type ofc_fit_method = i32;
+/// Least median of squares, the paper's.
+pub const OFC_FIT_LEAST_MEDIAN: i32 = 0;
+/// Least squares over every usable pixel, none rejected: Woodham, Iwahori and Barman's, for pictures without outliers.
+pub const OFC_FIT_LEAST_SQUARES: i32 = 1;
 
 /// How the regression in color space searches and what it rejects. Set by ofc_lmeds_params_default().
 #[repr(C)]
@@ -72,15 +88,17 @@ pub struct ofc_lmeds_params {
     pub subsets: u32,
     /// Pixels that the search looks at, at least 12; the result is judged on all. Default 10,000.
     pub sample_size: u32,
+    /// OFC_FIT_LEAST_MEDIAN or OFC_FIT_LEAST_SQUARES. Default OFC_FIT_LEAST_MEDIAN.
+    pub method: ofc_fit_method,
     /// Must be zero.
-    pub reserved: [u32; 5],
+    pub reserved: [u32; 4],
 }
 
 impl ofc_lmeds_params {
     /// The defaults.
     pub(crate) fn defaults() -> Self {
         let lmeds::Params {
-            method: _,
+            method,
             confidence,
             outlier_share,
             min_subsets,
@@ -100,7 +118,11 @@ impl ofc_lmeds_params {
             min_subsets,
             subsets,
             sample_size,
-            reserved: [0; 5],
+            method: match method {
+                lmeds::Method::LeastMedian => OFC_FIT_LEAST_MEDIAN,
+                lmeds::Method::LeastSquares => OFC_FIT_LEAST_SQUARES,
+            },
+            reserved: [0; 4],
         }
     }
 
@@ -116,13 +138,19 @@ impl ofc_lmeds_params {
             min_subsets,
             subsets,
             sample_size,
+            method,
             reserved,
         } = self;
-        if reserved != [0; 5] {
+        if reserved != [0; 4] {
             return Err(OFC_STATUS_RESERVED_NOT_ZERO);
         }
+        let method = match method {
+            OFC_FIT_LEAST_MEDIAN => lmeds::Method::LeastMedian,
+            OFC_FIT_LEAST_SQUARES => lmeds::Method::LeastSquares,
+            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
+        };
         let params = lmeds::Params {
-            method: lmeds::Method::LeastMedian,
+            method,
             confidence,
             outlier_share,
             min_subsets,
@@ -192,6 +220,13 @@ pub struct ofc_estimate {
 impl From<Estimate> for ofc_estimate {
     fn from(estimate: Estimate) -> Self {
         let Estimate { value, standard_error, t, p, low, high } = estimate;
+        Self { value, standard_error, t, p, low, high }
+    }
+}
+
+impl From<ofc_estimate> for Estimate {
+    fn from(estimate: ofc_estimate) -> Self {
+        let ofc_estimate { value, standard_error, t, p, low, high } = estimate;
         Self { value, standard_error, t, p, low, high }
     }
 }
@@ -366,7 +401,8 @@ impl From<Ellipsoid> for ofc_ellipsoid {
 pub struct ofc_tilts {
     /// Counter-clockwise from x in (-pi, pi], for a convex surface.
     pub tilt_rad: [f64; 3],
-    /// Mean gradient (Ix, Iy) of each channel over the inliers, pixel values a pixel, y up: r, g, b.
+    /// Mean gradient (Ix, Iy) of each channel over the inliers, pixel values a pixel, y up: r, g, b; zero where the
+    /// estimator has none.
     pub mean_gradient: [f64; 6],
 }
 

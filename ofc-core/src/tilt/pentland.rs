@@ -3,19 +3,12 @@
 //! # Reference
 //! Section 3.2, eqs. 20-21. A. P. Pentland, "Finding the illuminant direction", J. Opt. Soc. Am. 72, 1982.
 
+use super::{Tilts, has_direction};
 use crate::cells::{Block, for_each_block};
-use crate::image::{Image, Window, for_each_bit};
+use crate::differences::Differences;
+use crate::image::{Image, WINDOW, Window, for_each_bit};
 use core::f64::consts::FRAC_1_SQRT_2;
-use libm::atan2;
-
-/// What the derivatives of the three channels say.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tilts {
-    /// The tilt of each channel's light in (-pi, pi], counter-clockwise from x, for a convex surface.
-    pub tilts: [f64; 3],
-    /// The mean gradient (Ix, Iy) of each channel, in pixel values a pixel, y up.
-    pub gradients: [[f64; 2]; 3],
-}
+use libm::{atan2, hypot};
 
 /// The mean difference along one direction.
 #[derive(Clone, Copy, Default)]
@@ -82,11 +75,74 @@ pub fn tilts_of(
         // Least squares of eq. 20 over the four unit directions, whose normal matrix is twice the identity.
         let ix = 0.5 * (e + FRAC_1_SQRT_2 * (ne - nw));
         let iy = 0.5 * (n + FRAC_1_SQRT_2 * (ne + nw));
-        if ix == 0.0 && iy == 0.0 {
+        if !has_direction(ix, iy) {
             return None;
         }
         *tilt = atan2(iy, ix);
         *gradient = [ix, iy];
     }
     Some(result)
+}
+
+/// Steps between pixels may be no longer than this along either axis.
+pub const MAX_STEP: i32 = 1024;
+
+/// The tilts from differences between inliers along any set of directions, each given as the step (right, up) from one
+/// pixel of a pair to the other.
+///
+/// `None` when a step has no pair of inliers, is zero or too long, all of them are parallel, or a channel's mean gradient
+/// is zero.
+pub fn tilts_along(image: &Image, inliers: impl Fn(&Window) -> u64, steps: &[[i32; 2]]) -> Option<Tilts> {
+    // Least squares of eq. 20: the normal matrix ((xx, xy), (xy, yy)), and the right side of each channel.
+    let ([mut xx, mut xy, mut yy], mut right) = ([0.0; 3], [[0.0; 2]; 3]);
+    for &[dx, dy] in steps {
+        if dx.abs().max(dy.abs()) > MAX_STEP {
+            return None;
+        }
+        let length = hypot(f64::from(dx), f64::from(dy));
+        let (x, y) = (f64::from(dx) / length, f64::from(dy) / length);
+        for ((mean, _), right) in
+            differences(image, &inliers, dx, dy).statistics(length)?.into_iter().zip(&mut right)
+        {
+            *right = [right[0] + x * mean, right[1] + y * mean];
+        }
+        (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
+    }
+    let determinant = xx * yy - xy * xy;
+    let parallel = determinant.is_nan() || determinant <= 1e-9 * xx.max(yy);
+    if parallel {
+        return None;
+    }
+    let mut result = Tilts { tilts: [0.0; 3], gradients: [[0.0; 2]; 3] };
+    for ((tilt, gradient), [a, b]) in result.tilts.iter_mut().zip(&mut result.gradients).zip(right) {
+        let (ix, iy) = ((yy * a - xy * b) / determinant, (xx * b - xy * a) / determinant);
+        if !has_direction(ix, iy) {
+            return None;
+        }
+        *tilt = atan2(iy, ix);
+        *gradient = [ix, iy];
+    }
+    Some(result)
+}
+
+/// The differences of all pairs of inliers one step apart.
+fn differences(image: &Image, inliers: impl Fn(&Window) -> u64, dx: i32, dy: i32) -> Differences {
+    // The pixel further up is in an earlier row; a step down is one up backwards.
+    let (rows, columns) = (dy.unsigned_abs() as usize, dx.unsigned_abs() as usize);
+    let upper_is_right = (dx > 0) == (dy > 0) || dy == 0;
+    let (mut upper, mut lower) = (Window::new(), Window::new());
+    let mut sums = Differences::default();
+    for y in 0..image.height().saturating_sub(rows) {
+        for x in (0..image.width().saturating_sub(columns)).step_by(WINDOW) {
+            let (left, right) = (x, x + columns);
+            let (upper_x, lower_x) = if upper_is_right { (right, left) } else { (left, right) };
+            image.read(upper_x, y, &mut upper);
+            image.read(lower_x, y + rows, &mut lower);
+            let bits = inliers(&upper) & inliers(&lower);
+            let ends_above = dy > 0 || (dy == 0 && dx > 0);
+            let (to, from) = if ends_above { (&upper, &lower) } else { (&lower, &upper) };
+            sums.add(bits, (to, 0), (from, 0));
+        }
+    }
+    sums
 }
