@@ -107,12 +107,15 @@ static void bad_parameters(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, rank_threshold, -1e-3);
     BAD(OFC_STATUS_INVALID_PARAMETER, rank_threshold, 1);
     BAD(OFC_STATUS_INVALID_PARAMETER, rank_threshold, NAN);
-    BAD(OFC_STATUS_INVALID_PARAMETER, slant_fallback, 2);
+    BAD(OFC_STATUS_INVALID_PARAMETER, slant_fallback, 6);
+    BAD(OFC_STATUS_INVALID_PARAMETER, tilt_estimator, 5);
+    BAD(OFC_STATUS_INVALID_PARAMETER, tilt_estimator, -1);
+    BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, slant_fallback, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[0], 1);
-    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[6], 1);
+    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[5], 1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[0], 1);
-    BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[4], 1);
+    BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[3], 1);
 #undef BAD
     for (size_t i = 0; i < n; i++) {
         REFUSED(bad[i].expected, out,
@@ -249,7 +252,9 @@ static void defaults(void **state)
     assert_int_equal(params->lmeds.min_subsets, 500);
     assert_int_equal(params->lmeds.subsets, 0);
     assert_int_equal(params->lmeds.sample_size, 10000);
-    assert_int_equal(params->slant_fallback, 1);
+    assert_int_equal(params->slant_fallback, OFC_FALLBACK_LEAST_SQUARES);
+    assert_int_equal(params->tilt_estimator, OFC_TILT_PENTLAND);
+    assert_int_equal(params->lmeds.method, OFC_FIT_LEAST_MEDIAN);
     ofc_lmeds_params lmeds;
     memset(&lmeds, 0, sizeof lmeds);
     assert_int_equal(ofc_lmeds_params_default(&lmeds), OFC_STATUS_OK);
