@@ -57,14 +57,16 @@ pub enum Order {
 }
 
 impl Order {
-    const fn samples(self) -> usize {
+    /// Samples of one pixel.
+    #[must_use]
+    pub const fn samples(self) -> usize {
         match self {
             Self::Rgb | Self::Bgr => 3,
             Self::Rgba | Self::Bgra => 4,
         }
     }
 
-    const fn positions(self) -> [usize; 3] {
+    pub(crate) const fn positions(self) -> [usize; 3] {
         match self {
             Self::Rgb | Self::Rgba => [0, 1, 2],
             Self::Bgr | Self::Bgra => [2, 1, 0],
@@ -133,8 +135,13 @@ impl<'a> Mask<'a> {
         Ok(Self { bytes, row_stride })
     }
 
+    /// Whether the pixel at `(x, y)`, which must be within the width, is selected.
+    pub(crate) fn contains(&self, x: usize, y: usize) -> bool {
+        self.bytes.get(y * self.row_stride + x).is_some_and(|&byte| byte != 0)
+    }
+
     /// One bit a pixel for the `len` pixels from `(x, y)` on, set where the mask is not zero.
-    fn bits(&self, x: usize, y: usize, len: usize) -> u64 {
+    pub(crate) fn bits(&self, x: usize, y: usize, len: usize) -> u64 {
         let row = self.bytes.get(y * self.row_stride + x..).unwrap_or_default();
         let mut bits = 0;
         for (i, &byte) in row.iter().take(len).enumerate() {
@@ -263,11 +270,32 @@ impl<'a> Image<'a> {
             }
         }
     }
+
+    /// Writes `value` of every selected pixel into `out`, in picture order, as far as it holds, and returns what was
+    /// written. `selected` gives the bits of a window.
+    pub fn gather<'w>(
+        &self,
+        selected: impl Fn(&Window) -> u64,
+        out: &'w mut [f32],
+        value: impl Fn(f32, f32, f32) -> f64,
+    ) -> &'w mut [f32] {
+        let mut count = 0;
+        self.for_each_window(|window| {
+            for_each_bit(selected(window), |i| {
+                let [r, g, b] = window.pixel(i);
+                if let Some(slot) = out.get_mut(count) {
+                    *slot = value(r, g, b) as f32;
+                    count += 1;
+                }
+            });
+        });
+        out.get_mut(..count).unwrap_or_default()
+    }
 }
 
 /// Every `stride` bytes one sample, as many as `out` holds.
 fn read_samples<const N: usize>(bytes: &[u8], stride: usize, out: &mut [f32], load: impl Fn([u8; N]) -> f32) {
-    for (pixel, out) in bytes.chunks(stride).zip(out) {
+    for (pixel, out) in bytes.chunks(stride.max(1)).zip(out) {
         if let Some(&sample) = pixel.first_chunk::<N>() {
             *out = load(sample);
         }
@@ -340,17 +368,17 @@ impl Usable {
     /// The bits of `window`'s usable pixels.
     #[must_use]
     #[inline]
+    #[expect(
+        clippy::needless_bitwise_bool,
+        reason = "noise decides these comparisons, no branch predictor does"
+    )]
     pub fn bits(&self, window: &Window) -> u64 {
         let limit = self.saturation;
         window.masked
             & window.bits(|r, g, b| {
-                (r > 0.0 || g > 0.0 || b > 0.0)
-                    && r < limit
-                    && g < limit
-                    && b < limit
-                    && r.is_finite()
-                    && g.is_finite()
-                    && b.is_finite()
+                let lit = (r > 0.0) | (g > 0.0) | (b > 0.0);
+                let unsaturated = (r < limit) & (g < limit) & (b < limit);
+                lit & unsaturated & r.is_finite() & g.is_finite() & b.is_finite()
             })
     }
 

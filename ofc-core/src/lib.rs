@@ -8,9 +8,29 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod cells;
+pub mod channel_maxima;
+pub mod check;
+pub mod constrained_slant;
 pub mod depth;
+pub mod differences;
 pub mod ellipsoid;
 pub mod image;
+pub mod inliers;
+pub mod integrability;
+pub mod lmeds;
+pub mod location;
 pub mod mat3;
+pub mod normals;
+pub mod orientation;
+pub mod orthogonal;
+pub mod rank;
+pub mod regression;
+pub mod render;
 pub mod rng;
+pub mod segment;
 pub mod select;
+pub mod slant;
+pub mod solve;
+pub mod student_t;
+pub mod tilt;

@@ -3,7 +3,13 @@
 //! Small state, integer arithmetic only, the same sequence on every target.
 //!
 //! # Reference
-//! G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+//! G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014. G. E. P. Box,
+//! M. E. Muller, "A note on the generation of random normal deviates", Ann. Math. Stat. 29, 1958.
+
+use core::f64::consts::TAU;
+use libm::{cos, log, sin, sqrt};
+
+const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// A seeded sequence of random numbers.
 #[derive(Clone, Debug)]
@@ -18,11 +24,24 @@ impl Rng {
 
     /// 64 random bits.
     pub const fn next_u64(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        self.0 = self.0.wrapping_add(STEP);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
+    }
+
+    /// Goes on as if `draws` numbers of 64 bits had been drawn.
+    pub const fn skip(&mut self, draws: u64) {
+        self.0 = self.0.wrapping_add(draws.wrapping_mul(STEP));
+    }
+
+    /// Two independent numbers of the standard normal distribution, by Box and Muller's method: two draws, no retry.
+    pub fn normal_pair(&mut self) -> [f64; 2] {
+        // 1 - unit is in (0, 1]: its logarithm is finite.
+        let radius = sqrt(-2.0 * log(1.0 - self.unit()));
+        let angle = TAU * self.unit();
+        [radius * cos(angle), radius * sin(angle)]
     }
 
     /// A number from 0 up to but not including `bound`, without a retry loop; 0 when `bound` is 0.
@@ -84,6 +103,16 @@ mod tests {
         let mut all = rng.distinct::<6>(6).unwrap();
         all.sort_unstable();
         assert_eq!(all, [0, 1, 2, 3, 4, 5]);
+    }
+
+    #[test]
+    fn skipping_is_drawing() {
+        let (mut drawn, mut skipped) = (Rng::new(5), Rng::new(5));
+        for _ in 0..7 {
+            drawn.next_u64();
+        }
+        skipped.skip(7);
+        assert_eq!(drawn.next_u64(), skipped.next_u64());
     }
 
     #[test]

@@ -1,2 +1,41 @@
+//! The C ABI of ofc and nothing else: pointers are checked, structs are turned into the core's types, results are
+//! written back. `include/ofc.h` is generated from this crate; its doc comments are the manual.
 #![cfg_attr(not(feature = "std"), no_std)]
-//! The C ABI of ofc.
+#![allow(non_camel_case_types)] // The names are C's.
+#![allow(clippy::missing_safety_doc)] // The documentation is for C callers: every call says what it needs.
+#![allow(clippy::doc_markdown)] // As above: names are not Rust links.
+
+mod check;
+mod depth;
+mod image;
+mod light;
+mod orientation;
+mod orthogonal;
+mod pointers;
+mod regression;
+mod render;
+mod segment;
+mod slants;
+mod solve;
+mod status;
+mod types;
+mod version;
+
+pub use check::*;
+pub use depth::*;
+pub use image::*;
+pub use light::*;
+pub use orientation::*;
+pub use orthogonal::*;
+pub use pointers::OFC_WORKSPACE_ALIGNMENT;
+pub use regression::*;
+pub use render::*;
+pub use segment::*;
+pub use slants::*;
+pub use solve::*;
+pub use status::*;
+pub use types::*;
+pub use version::*;
+
+#[cfg(all(feature = "panic-handler", not(feature = "std")))]
+mod freestanding;

@@ -1,4 +1,13 @@
 //! Oracles, scenes and loaders that the tests share.
 #![allow(clippy::missing_panics_doc, clippy::must_use_candidate, reason = "a panic is how a test fails")]
 
+pub mod depth_maps;
 pub mod depth_oracle;
+pub mod linear;
+pub mod lmeds_oracle;
+pub mod photographs;
+pub mod scene;
+pub mod scenes;
+pub mod shipped;
+pub mod slant_oracle;
+pub mod tolerances;

@@ -1,0 +1,176 @@
+#include "common/picture.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace {
+
+std::string size_text(cv::Size size)
+{
+    return std::to_string(size.width) + " x " + std::to_string(size.height);
+}
+
+cv::Mat read(const std::string &path, int flags)
+{
+    cv::Mat image = cv::imread(path, flags);
+    if (image.empty())
+        throw UsageError("cannot read " + path + " as an image");
+    return image;
+}
+
+// The OFC_PIXEL_* of a Mat, or 0.
+ofc_pixel_format format_of(const cv::Mat &pixels, bool planes)
+{
+    int samples = 0;
+    switch (pixels.depth()) {
+    case CV_8U:
+        samples = OFC_PIXEL_RGB8;
+        break;
+    case CV_16U:
+        samples = OFC_PIXEL_RGB16;
+        break;
+    case CV_32F:
+        samples = OFC_PIXEL_RGB32F;
+        break;
+    default:
+        return 0;
+    }
+    if (planes)
+        return samples + (OFC_PIXEL_PLANES8 - OFC_PIXEL_RGB8);
+    switch (pixels.channels()) {
+    case 3:
+        return samples + (OFC_PIXEL_BGR8 - OFC_PIXEL_RGB8);
+    case 4:
+        return samples + (OFC_PIXEL_BGRA8 - OFC_PIXEL_RGB8);
+    default:
+        return 0;
+    }
+}
+
+} // namespace
+
+ofc_image Picture::view() const
+{
+    ofc_image image = {};
+    image.pixels = pixels.data;
+    image.width = pixels.cols;
+    image.height = pixels.rows;
+    image.row_stride_bytes = pixels.step; // not cols: rows may be padded, or belong to a larger Mat
+    image.format = format_of(pixels, !green.empty());
+    image.green_plane = green.data;
+    image.blue_plane = blue.data;
+    image.mask = mask.data;
+    image.mask_stride_bytes = mask.empty() ? 0 : mask.step[0];
+    return image;
+}
+
+cv::Mat Picture::display() const
+{
+    cv::Mat bgr;
+    if (!green.empty())
+        cv::merge(std::vector<cv::Mat>{blue, green, pixels}, bgr);
+    else if (pixels.channels() == 4)
+        cv::cvtColor(pixels, bgr, cv::COLOR_BGRA2BGR);
+    else
+        bgr = pixels;
+    cv::Mat shown = cv::Mat::zeros(bgr.size(), bgr.type());
+    bgr.copyTo(shown, mask.empty() ? cv::Mat(bgr.size(), CV_8U, cv::Scalar(255)) : mask);
+    double brightest = 0;
+    cv::minMaxLoc(shown.reshape(1), nullptr, &brightest);
+    shown.convertTo(shown, CV_8U, brightest > 0 ? 255 / brightest : 1);
+    return shown;
+}
+
+Picture read_picture(const std::string &path)
+{
+    Picture picture;
+    picture.pixels = read(path, cv::IMREAD_UNCHANGED);
+    if (picture.pixels.channels() < 3)
+        throw UsageError(path + " is grayscale: ofc needs a color picture, or three grayscale ones with --planes");
+    if (format_of(picture.pixels, false) == 0)
+        throw UsageError(path + " is neither of 8 nor 16 bits nor of 32-bit floats a channel");
+    return picture;
+}
+
+Picture read_planes(const std::string &red, const std::string &green, const std::string &blue)
+{
+    const auto plane = [](const std::string &path) {
+        cv::Mat image = read(path, cv::IMREAD_ANYDEPTH | cv::IMREAD_GRAYSCALE);
+        return image.isContinuous() ? image : image.clone(); // one stride for all three
+    };
+    Picture picture;
+    picture.pixels = plane(red);
+    picture.green = plane(green);
+    picture.blue = plane(blue);
+    for (const cv::Mat &other : {picture.green, picture.blue})
+        if (other.size() != picture.pixels.size() || other.type() != picture.pixels.type())
+            throw UsageError("the three planes differ in size or depth: " + size_text(picture.pixels.size()) +
+                             " and " + size_text(other.size()));
+    if (format_of(picture.pixels, true) == 0)
+        throw UsageError(red + " is neither of 8 nor 16 bits nor of 32-bit floats");
+    return picture;
+}
+
+cv::Mat read_mask(const std::string &path, cv::Size size)
+{
+    cv::Mat mask = read(path, cv::IMREAD_GRAYSCALE);
+    if (mask.size() != size)
+        throw UsageError("the mask is " + size_text(mask.size()) + ", the picture " + size_text(size));
+    return mask;
+}
+
+cv::Mat read_normals_tiff(const std::string &path, cv::Size size)
+{
+    cv::Mat zyx = read(path, cv::IMREAD_UNCHANGED);
+    if (zyx.type() != CV_32FC3)
+        throw UsageError(path + " is not a TIFF of 3 x 32-bit floats");
+    if (zyx.size() != size)
+        throw UsageError("the true normals are " + size_text(zyx.size()) + ", the picture " + size_text(size));
+    cv::Mat xyz;
+    cv::cvtColor(zyx, xyz, cv::COLOR_BGR2RGB); // imread takes the file's channels 0, 1, 2 for r, g, b and swaps them
+    return xyz;
+}
+
+void write_normals_tiff(const std::string &path, const cv::Mat &normals)
+{
+    cv::Mat zyx;
+    cv::cvtColor(normals, zyx, cv::COLOR_RGB2BGR); // imwrite swaps back: the file's samples are x, y, z
+    // OpenCV's own choice for three floats is LogLuv, which is lossy, cannot hold a negative number, and which few
+    // programs read.
+    constexpr int no_compression = 1;
+    write_image(path, zyx, {cv::IMWRITE_TIFF_COMPRESSION, no_compression});
+}
+
+cv::Mat normal_map(const cv::Mat &normals)
+{
+    cv::Mat map = cv::Mat::zeros(normals.size(), CV_8UC3);
+    for (int y = 0; y < normals.rows; y++)
+        for (int x = 0; x < normals.cols; x++) {
+            const cv::Vec3f n = normals.at<cv::Vec3f>(y, x);
+            if (n != cv::Vec3f())
+                for (int i = 0; i < 3; i++)
+                    map.at<cv::Vec3b>(y, x)[2 - i] = cv::saturate_cast<uchar>((n[i] + 1) * 127.5F);
+        }
+    return map;
+}
+
+cv::Mat shade(const cv::Mat &normals, const cv::Vec3d &light)
+{
+    const cv::Vec3d direction = cv::normalize(light);
+    cv::Mat image = cv::Mat::zeros(normals.size(), CV_8U);
+    for (int y = 0; y < normals.rows; y++)
+        for (int x = 0; x < normals.cols; x++)
+            image.at<uchar>(y, x) = cv::saturate_cast<uchar>(255 * direction.dot(cv::Vec3d(normals.at<cv::Vec3f>(y, x))));
+    return image;
+}
+
+void write_image(const std::string &path, const cv::Mat &image, const std::vector<int> &parameters)
+{
+    bool written = false;
+    try {
+        written = cv::imwrite(path, image, parameters);
+    } catch (const cv::Exception &) {
+    }
+    if (!written)
+        throw std::runtime_error("cannot write " + path);
+}

@@ -1,0 +1,47 @@
+// Pictures between files, cv::Mat and ofc.
+#pragma once
+
+#include <ofc.h>
+#include <opencv2/core.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+// What the user gave does not fit: the program says so and exits with status 2.
+struct UsageError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// A picture as ofc sees it: one Mat of BGR(A) pixels, or three grayscale planes.
+struct Picture {
+    cv::Mat pixels;       // CV_8U, CV_16U or CV_32F with 3 or 4 channels; or the red plane
+    cv::Mat green, blue;  // the other planes, or empty
+    cv::Mat mask;         // CV_8U, or empty
+
+    cv::Size size() const { return pixels.size(); }
+
+    // The view of it; valid for as long as the Mats are.
+    ofc_image view() const;
+
+    // For the eye: 8-bit BGR, the brightest channel at 255, black outside the mask.
+    cv::Mat display() const;
+};
+
+Picture read_picture(const std::string &path);
+Picture read_planes(const std::string &red, const std::string &green, const std::string &blue);
+
+// Reads a mask of the picture's size.
+cv::Mat read_mask(const std::string &path, cv::Size size);
+
+// Normals are CV_32FC3 in the order x, y, z, zero where there is none. In the TIFF the samples are x, y, z too.
+cv::Mat read_normals_tiff(const std::string &path, cv::Size size);
+void write_normals_tiff(const std::string &path, const cv::Mat &normals);
+
+// The usual 8-bit colors of a normal map: (n + 1) / 2 in r, g, b for x right, y up, z out; black without a normal.
+cv::Mat normal_map(const cv::Mat &normals);
+
+// Brightness under one white light from that direction, 8 bits.
+cv::Mat shade(const cv::Mat &normals, const cv::Vec3d &light);
+
+// Writes an image, with cv::imwrite's parameters, or throws std::runtime_error.
+void write_image(const std::string &path, const cv::Mat &image, const std::vector<int> &parameters = {});

@@ -1,0 +1,141 @@
+// Surface normals from a photograph, with everything a person wants to see of how they came about.
+//
+// Shows how cv::Mat goes in and out of ofc, the whole solve and each of its stages, and what to do with a status.
+
+#include "common/picture.hpp"
+#include "photo/options.hpp"
+#include "photo/overview.hpp"
+#include "photo/report.hpp"
+#include "photo/scene.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+namespace {
+
+// A workspace of so many bytes, aligned for any call.
+std::vector<std::uint64_t> workspace_of(std::size_t bytes)
+{
+    return std::vector<std::uint64_t>(bytes / sizeof(std::uint64_t) + 1);
+}
+
+// Solves the picture, and computes its normals where it can be solved.
+Result solve(const Picture &picture, const ofc_solve_params &params)
+{
+    Result result;
+    result.params = params;
+    result.inliers = cv::Mat::zeros(picture.size(), CV_8U);
+    result.normals = cv::Mat::zeros(picture.size(), CV_32FC3);
+    const ofc_image image = picture.view();
+    const auto timed = [&](const char *stage, auto call) {
+        const auto start = std::chrono::steady_clock::now();
+        const ofc_status status = call();
+        const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+        result.milliseconds.emplace_back(stage, elapsed.count());
+        return status;
+    };
+
+    const std::size_t bytes = ofc_solve_workspace_size(image.width, image.height, &params);
+    std::vector<std::uint64_t> workspace = workspace_of(bytes);
+    ofc_solution &s = result.solution;
+    result.status = timed("solve", [&] {
+        return ofc_solve(&image, &params, workspace.data(), bytes, result.inliers.data, &s);
+    });
+    if (!result.solved())
+        return result;
+    result.status = timed("normals", [&] {
+        return ofc_normals_compute(&image, &s, result.normals.ptr<float>(), result.normals.step);
+    });
+
+    // The same stages one by one, to say what each of them costs.
+    ofc_color_fit fit;
+    ofc_location location;
+    ofc_inliers first, both;
+    ofc_tilts tilts;
+    ofc_slants slants[OFC_MAX_CANDIDATES];
+    ofc_ellipsoid ellipsoid;
+    ofc_integrability integrability;
+    int32_t count = 0;
+    timed("lmeds_fit", [&] { return ofc_lmeds_fit(&image, &params.lmeds, workspace.data(), bytes, &fit, &first); });
+    double c[6];
+    for (int i = 0; i < 6; i++)
+        c[i] = fit.coefficients[i].value;
+    timed("norm_location", [&] {
+        return ofc_norm_location(&image, c, &first, params.lmeds.rejection, workspace.data(), bytes, &location, &both);
+    });
+    timed("ellipsoid", [&] { return ofc_ellipsoid_decompose(c, &ellipsoid); });
+    timed("tilts", [&] { return ofc_tilt_pentland(&image, &both, &tilts); });
+    timed("slants", [&] { return ofc_constrained_slants_find(tilts.tilt_rad, ellipsoid.cosines, slants, &count); });
+    timed("integrability",
+          [&] { return ofc_integrability_integral(&image, &both, s.orientation.f_inverse, &integrability); });
+    return result;
+}
+
+int run(const Options &options)
+{
+    Picture picture;
+    cv::Mat truth;
+    std::optional<cv::Matx33d> true_f;
+    if (!options.planes.empty()) {
+        picture = read_planes(options.planes[0], options.planes[1], options.planes[2]);
+    } else if (!options.image.empty()) {
+        picture = read_picture(options.image);
+    } else {
+        const Scene scene = render_scene();
+        picture = scene.picture;
+        truth = scene.normals;
+        true_f = scene.f;
+    }
+    if (!options.mask.empty())
+        picture.mask = read_mask(options.mask, picture.size());
+    if (!options.truth.empty())
+        truth = read_normals_tiff(options.truth, picture.size());
+    const std::filesystem::path out = options.out;
+    std::error_code failure;
+    std::filesystem::create_directories(out, failure);
+    if (failure)
+        throw UsageError("cannot make the folder " + out.string() + ": " + failure.message());
+
+    ofc_solve_params params;
+    ofc_solve_params_default(&params);
+    params.lmeds.seed = options.seed.value_or(params.lmeds.seed);
+    params.lmeds.subsets = options.subsets.value_or(params.lmeds.subsets);
+    Result result = solve(picture, params);
+    result.true_f = true_f;
+    if (result.solved() && !truth.empty())
+        result.median_error_deg = median_angle_deg(result.normals, truth);
+
+    write_report(out / "report.json", result);
+    write_image(out / "inliers.png", result.inliers);
+    write_image(out / "overview.png", overview(picture, result));
+    if (result.solved()) {
+        write_image(out / "normals.png", normal_map(result.normals));
+        write_normals_tiff(out / "normals.tiff", result.normals);
+    } else {
+        // What an earlier run left there is not this picture's.
+        std::filesystem::remove(out / "normals.png", failure);
+        std::filesystem::remove(out / "normals.tiff", failure);
+    }
+
+    for (const Line &line : summary(result))
+        std::fprintf(result.solved() ? stdout : stderr, "%-10s %s\n", line.label.c_str(), line.text.c_str());
+    std::printf("wrote %s: look at overview.png\n", std::filesystem::absolute(out).lexically_normal().c_str());
+    return result.solved() ? 0 : 1;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    const Options options = parse_options(argc, argv);
+    try {
+        return run(options);
+    } catch (const UsageError &error) {
+        std::fprintf(stderr, "ofc_photo: %s\n", error.what());
+        return 2;
+    } catch (const std::exception &error) {
+        std::fprintf(stderr, "ofc_photo: %s\n", error.what());
+        return 1;
+    }
+}

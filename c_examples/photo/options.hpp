@@ -1,0 +1,19 @@
+// The command line of ofc_photo.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+struct Options {
+    std::string image;               // empty: the program renders its own scene
+    std::vector<std::string> planes; // none, or red, green, blue
+    std::string mask, truth;         // empty where not given
+    std::optional<std::uint64_t> seed;
+    std::optional<std::uint32_t> subsets;
+    std::string out = "out";
+};
+
+// Parses the command line; on --help, or with a message where it is wrong, exits with status 0 or 2.
+Options parse_options(int argc, char **argv);

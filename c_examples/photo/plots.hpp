@@ -1,0 +1,15 @@
+// The two plots of the overview, after Figures 4(a) and 6(b) of the paper.
+#pragma once
+
+#include "photo/report.hpp"
+
+constexpr int font = 0; // cv::FONT_HERSHEY_SIMPLEX
+
+// Text with its baseline at `at`.
+void put_text(cv::Mat &image, const std::string &text, cv::Point at, double scale, cv::Scalar color);
+
+// f(sigma1) on the eight branches of eqs. 25, with the solutions marked; S is the chosen one.
+cv::Mat plot_curves(const Result &result, cv::Size size);
+
+// Colors of the picture and the ellipsoid fitted to them.
+cv::Mat plot_colors(const Picture &picture, const Result &result, cv::Size size);

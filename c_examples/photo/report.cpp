@@ -1,0 +1,178 @@
+#include "photo/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+using json = nlohmann::ordered_json;
+
+namespace {
+
+const char *const channel_names[] = {"r", "g", "b"};
+
+json matrix(const double (&m)[9])
+{
+    return {{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}};
+}
+
+json in_degrees(const double (&radians)[3])
+{
+    return {degrees(radians[0]), degrees(radians[1]), degrees(radians[2])};
+}
+
+const char *source_name(ofc_slant_source source)
+{
+    switch (source) {
+    case OFC_SLANTS_ROOT:
+        return "root of eqs. 25";
+    case OFC_SLANTS_LEAST_SQUARES:
+        return "least squares over eqs. 24 (eqs. 25 have no root)";
+    default:
+        return "none";
+    }
+}
+
+json candidates(const ofc_solution &solution)
+{
+    json list = json::array();
+    for (int i = 0; i < solution.candidate_count; i++) {
+        const ofc_slants &candidate = solution.candidates[i];
+        list.push_back({{"slant_deg", in_degrees(candidate.slant_rad)},
+                        {"branch", candidate.branch},
+                        {"integral", candidate.integral},
+                        {"residual", candidate.residual},
+                        {"chosen", i == solution.chosen}});
+    }
+    return list;
+}
+
+json coefficients(const ofc_color_fit &fit)
+{
+    const char *const names[] = {"c11", "c22", "c33", "c12", "c13", "c23"};
+    json list = json::array();
+    for (int i = 0; i < 6; i++) {
+        const ofc_estimate &c = fit.coefficients[i];
+        list.push_back({{"name", names[i]},
+                        {"value", c.value},
+                        {"standard_error", c.standard_error},
+                        {"t", c.t},
+                        {"p", c.p},
+                        {"low", c.low},
+                        {"high", c.high}});
+    }
+    return list;
+}
+
+std::string text(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+std::string text(const char *format, ...)
+{
+    char line[256];
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    return line;
+}
+
+} // namespace
+
+std::optional<double> median_angle_deg(const cv::Mat &normals, const cv::Mat &truth)
+{
+    std::vector<double> angles;
+    for (int y = 0; y < normals.rows; y++)
+        for (int x = 0; x < normals.cols; x++) {
+            const cv::Vec3d n = normals.at<cv::Vec3f>(y, x), t = truth.at<cv::Vec3f>(y, x);
+            if (cv::norm(n) > 0 && cv::norm(t) > 0)
+                angles.push_back(degrees(std::acos(std::clamp(n.dot(t) / (cv::norm(n) * cv::norm(t)), -1.0, 1.0))));
+        }
+    if (angles.empty())
+        return std::nullopt;
+    const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
+    std::nth_element(angles.begin(), middle, angles.end());
+    return *middle;
+}
+
+Row row_of(const cv::Matx33d &f, int channel)
+{
+    const double x = f(channel, 0), y = f(channel, 1), z = f(channel, 2);
+    return {degrees(std::atan2(y, x)), degrees(std::atan2(std::hypot(x, y), z)), std::hypot(x, y, z)};
+}
+
+void write_report(const std::string &path, const Result &result)
+{
+    const ofc_solution &s = result.solution;
+    json report = {
+        {"status", ofc_status_message(result.status)},
+        {"status_code", result.status},
+        {"version", ofc_version_string()},
+        {"parameters", {{"seed", result.params.lmeds.seed}, {"subsets", s.fit.subsets}}},
+        {"pixels",
+         {{"usable", s.census.usable},
+          {"masked_out", s.census.masked_out},
+          {"dark", s.census.dark},
+          {"saturated", s.census.saturated},
+          {"non_finite", s.census.non_finite}}},
+        {"coefficients", coefficients(s.fit)},
+        {"C", matrix(s.ellipsoid.c)},
+        {"r_squared", s.fit.r_squared},
+        {"dispersion", s.fit.dispersion},
+        {"noise_deviation", s.fit.noise_deviation},
+        {"degenerate_noise_deviation", s.fit.degenerate_noise_deviation},
+        {"inliers", {{"after_residuals", s.fit.inlier_count}, {"after_norms", s.inlier_count}}},
+        {"norm_location", s.norm_location.location},
+        {"norms", s.ellipsoid.norms},
+        {"cosines", s.ellipsoid.cosines},
+        {"tilt_deg", in_degrees(s.tilts.tilt_rad)},
+        {"slant_deg", in_degrees(s.slant_rad)},
+        {"slant_source", source_name(s.slant_source)},
+        {"candidates", candidates(s)},
+        {"F", matrix(s.orientation.f)},
+        {"singular_values", s.orientation.singular_values},
+    };
+    for (const auto &[stage, milliseconds] : result.milliseconds)
+        report["ms"][stage] = std::round(milliseconds * 1000) / 1000;
+    if (result.median_error_deg)
+        report["median_error_deg"] = *result.median_error_deg;
+    for (int c = 0; result.true_f && c < 3; c++) {
+        const Row row = row_of(*result.true_f, c);
+        report["truth"][channel_names[c]] = {
+            {"tilt_deg", row.tilt_deg}, {"slant_deg", row.slant_deg}, {"norm", row.norm}};
+    }
+    std::ofstream file(path);
+    file << report.dump(2) << '\n';
+    if (!file)
+        throw std::runtime_error("cannot write " + path);
+}
+
+std::vector<Line> summary(const Result &result)
+{
+    const ofc_solution &s = result.solution;
+    std::vector<Line> lines;
+    if (!result.solved())
+        lines.push_back({"refused", ofc_status_message(result.status)});
+    if (result.status < 0)
+        return lines;
+    lines.push_back({"pixels", text("%d usable, %d inliers after residuals, %d after norms", s.census.usable,
+                                    s.fit.inlier_count, s.inlier_count)});
+    lines.push_back({"ellipsoid", text("robust R^2 %.4f, dispersion %.4f", s.fit.r_squared, s.fit.dispersion)});
+    if (s.orientation.rank == 0)
+        return lines;
+    lines.back().text += text(", location of norms %.4f", s.norm_location.location);
+    lines.push_back({"slants", text("from a %s; %d candidate%s", source_name(s.slant_source), s.candidate_count,
+                                    s.candidate_count == 1 ? "" : "s")});
+    for (int c = 0; c < 3; c++) {
+        std::string line = text("tilt %7.2f  slant %5.2f  norm %6.1f", degrees(s.tilts.tilt_rad[c]),
+                                degrees(s.slant_rad[c]), s.ellipsoid.norms[c]);
+        if (result.true_f) {
+            const Row row = row_of(*result.true_f, c);
+            line += text("   (true %7.2f  %5.2f  %6.1f)", row.tilt_deg, row.slant_deg, row.norm);
+        }
+        lines.push_back({channel_names[c], line});
+    }
+    if (result.median_error_deg)
+        lines.push_back({"normals", text("median error %.2f degrees", *result.median_error_deg)});
+    return lines;
+}

@@ -1,0 +1,289 @@
+//! The whole pipeline of section 3.4 over one workspace.
+
+mod fallback;
+
+pub use fallback::SlantFallback;
+
+use crate::constrained_slant::{self, MAX_CANDIDATES};
+use crate::ellipsoid::{self, Ellipsoid};
+use crate::image::{Census, Image, Usable, Window};
+use crate::inliers::{Band, Inliers};
+use crate::integrability;
+use crate::lmeds::{self, Fit, FitError, Method};
+use crate::location::{self, Location};
+use crate::orientation::{self, Orientation, RANK_THRESHOLD};
+use crate::rank::{self, Rank};
+use crate::tilt::{TiltEstimator, Tilts};
+use heapless::Vec;
+
+/// The noise that would make a degenerate scene look like this one must be so many times the noise there is. Degenerate
+/// scenes (cylinders, planes, cones, ramps, mixtures of colors, with and without noise) come to 0.2-1.1, photographs
+/// that give good normals to 1.9-6.7; at 1.5 nearly half of a coefficient of C can be bias.
+const SMALLEST_NOISE_MARGIN: f64 = 1.5;
+
+/// What to do, with the defaults of the paper.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Params {
+    /// The regression in color space.
+    pub lmeds: lmeds::Params,
+    /// A pixel is saturated if a channel is at or above this; `None` for the largest value of the pixel type, and no
+    /// limit for f32. Default `None`.
+    pub saturation: Option<f32>,
+    /// Where the tilts come from. Default [`TiltEstimator::Pentland`].
+    pub tilts: TiltEstimator,
+    /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
+    pub rank_threshold: f64,
+    /// Where the slants come from when eqs. 25 have no root. Default [`SlantFallback::LeastSquares`].
+    pub fallback: SlantFallback,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            lmeds: lmeds::Params::default(),
+            saturation: None,
+            tilts: TiltEstimator::Pentland,
+            rank_threshold: RANK_THRESHOLD,
+            fallback: SlantFallback::LeastSquares,
+        }
+    }
+}
+
+impl Params {
+    /// Whether every parameter is in its range.
+    #[must_use]
+    pub fn are_valid(&self) -> bool {
+        self.lmeds.subset_count().is_some()
+            && self.saturation.is_none_or(|level| level > 0.0)
+            && (0.0..1.0).contains(&self.rank_threshold)
+            && match self.tilts {
+                TiltEstimator::Given(tilts) => tilts.iter().all(|tilt| tilt.is_finite()),
+                _ => true,
+            }
+    }
+
+    /// Which pixels of `image` can be used.
+    #[must_use]
+    pub fn usable(&self, image: &Image) -> Usable {
+        Usable { saturation: self.saturation.unwrap_or(image.sample().saturation()) }
+    }
+}
+
+/// How far the pipeline came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// To F.
+    Solved,
+    /// The colors, or the normals, span less than three dimensions: C is not determined.
+    RankDeficient,
+    /// The colors do not lie on an ellipsoid: C is not positive definite.
+    NotPositiveDefinite,
+    /// A channel's mean gradient over the inliers is zero, or there are no neighbouring inliers: no tilts.
+    NoTilt,
+    /// No slants agree with the tilts and the angles between the rows of F, and there was to be no fallback.
+    NoConsistentSlants,
+}
+
+/// Where the slants come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SlantSource {
+    /// A root of eqs. 25, chosen by integrability.
+    Root,
+    /// There is no root: least squares over eqs. 24.
+    LeastSquares,
+    /// There is no root: the least integral (15) that eqs. 24 allow.
+    TiltIntegrability,
+    /// There is no root: Pentland's slants, eq. 22.
+    Pentland,
+    /// There is no root: Lee and Rosenfeld's slants, eq. 23.
+    LeeRosenfeld,
+    /// There is no root: Zheng and Chellappa's slants.
+    ZhengChellappa,
+}
+
+/// Slants that are consistent with the tilts, and how integrable their normals are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// Slants of f1, f2, f3 in radians.
+    pub slants: [f64; 3],
+    /// Which of the eight branches of eqs. 25 they lie on, 1 to 8; 0 for least squares.
+    pub branch: u8,
+    /// The largest residual of eqs. 24.
+    pub residual: f64,
+    /// The integral (15) as a mean over cells; infinite when F is rank-deficient or there are no cells.
+    pub integral: f64,
+}
+
+/// The candidates and the choice among them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// The slants of F.
+    pub slants: [f64; 3],
+    /// Where they come from.
+    pub source: SlantSource,
+    /// All candidates, by ascending first slant.
+    pub candidates: Vec<Candidate, MAX_CANDIDATES>,
+    /// Which of them was chosen.
+    pub chosen: usize,
+    /// F.
+    pub orientation: Orientation,
+}
+
+/// What the pipeline found. What comes after the stage that `outcome` names is `None`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// How far it came.
+    pub outcome: Outcome,
+    /// What became of the pixels before the fit.
+    pub census: Census,
+    /// The root mean square of the colors along their principal axes, descending, in pixel values.
+    pub color_deviations: [f64; 3],
+    /// The ranks of colors and normals, of the inliers where there is a fit; `None` where there are no usable pixels.
+    pub rank: Option<Rank>,
+    /// The regression; `None` where the colors do not determine C.
+    pub fit: Option<Fit>,
+    /// The location of the norms of the normals.
+    pub norm_location: Option<Location>,
+    /// The pixels that obey the model; none without a fit.
+    pub inliers: Inliers,
+    /// How many they are.
+    pub inlier_count: usize,
+    /// C, its root, and the norms and angles of the rows of F.
+    pub ellipsoid: Option<Ellipsoid>,
+    /// The tilts of the rows of F.
+    pub tilts: Option<Tilts>,
+    /// Slants and F.
+    pub choice: Option<Choice>,
+}
+
+/// How many `f32` [`solve`] needs for a picture of `pixels` pixels.
+#[must_use]
+pub const fn workspace_len(pixels: usize, sample_size: u32) -> usize {
+    let location = pixels.saturating_mul(2);
+    let fit = lmeds::workspace_len(pixels, sample_size);
+    if location > fit { location } else { fit }
+}
+
+/// From a picture to F, or as far as the picture allows.
+///
+/// # Errors
+/// [`FitError`] where nothing can be computed at all; [`FitError::RankDeficient`] is an [`Outcome`] here.
+///
+/// # Scratch
+/// [`workspace_len`] `f32`; what they hold before does not matter.
+pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<Solution, FitError> {
+    if !params.are_valid() {
+        return Err(FitError::Params);
+    }
+    let pixels = image.width() * image.height();
+    let workspace = workspace
+        .get_mut(..workspace_len(pixels, params.lmeds.sample_size))
+        .ok_or(FitError::WorkspaceTooShort)?;
+    let usable = params.usable(image);
+    let mut solution = Solution {
+        outcome: Outcome::RankDeficient,
+        census: usable.count(image),
+        color_deviations: [0.0; 3],
+        rank: None,
+        fit: None,
+        norm_location: None,
+        inliers: Inliers::none(usable),
+        inlier_count: 0,
+        ellipsoid: None,
+        tilts: None,
+        choice: None,
+    };
+
+    let fit = match lmeds::fit(image, usable, &params.lmeds, workspace) {
+        Ok(fit) => fit,
+        Err(FitError::RankDeficient { color_deviations }) => {
+            let rank = rank::rank(image, |window| usable.bits(window), None);
+            return Ok(Solution { color_deviations, rank, ..solution });
+        }
+        Err(error) => return Err(error),
+    };
+    solution.fit = Some(fit);
+    solution.color_deviations = fit.color_deviations;
+    solution.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
+    solution.inlier_count = fit.inliers;
+    let bits = |window: &Window| solution.inliers.bits(window);
+    // Outliers that least squares keeps are no noise: the robust dispersion leaves them out.
+    let deviation = match params.lmeds.method {
+        Method::LeastMedian => fit.residual_deviation,
+        Method::LeastSquares => fit.residual_deviation.min(fit.dispersion),
+    };
+    solution.rank = rank::rank(image, bits, Some((fit.z(), deviation)));
+    let share = if deviation < fit.residual_deviation { deviation / fit.residual_deviation } else { 1.0 };
+    let noise = fit.noise_deviation * share;
+    let is_determined = fit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * noise;
+    if !is_determined || solution.rank.is_some_and(|rank| rank.colors < 3) {
+        return Ok(solution);
+    }
+
+    solution.outcome = Outcome::NotPositiveDefinite;
+    let Ok(ellipsoid) = ellipsoid::decompose(&fit.z()) else { return Ok(solution) };
+    solution.ellipsoid = Some(ellipsoid);
+    if solution.rank.is_some_and(|rank| !rank.is_full()) {
+        solution.outcome = Outcome::RankDeficient;
+        return Ok(solution);
+    }
+    solution.norm_location = location::norms(image, &solution.inliers, &fit.z(), workspace);
+    if let Some(norms) = solution.norm_location {
+        solution.inliers.norm = Band::norm(fit.z(), &norms, params.lmeds.rejection);
+        solution.inlier_count = solution.inliers.count(image);
+    }
+
+    solution.outcome = Outcome::NoTilt;
+    let inliers = solution.inliers;
+    solution.tilts = params.tilts.estimate(image, &inliers, workspace);
+    let Some(Tilts { tilts, .. }) = solution.tilts else { return Ok(solution) };
+
+    solution.outcome = Outcome::NoConsistentSlants;
+    solution.choice = choose(image, &inliers, &ellipsoid, tilts, params, workspace);
+    match &solution.choice {
+        None => {}
+        Some(choice) if choice.orientation.rank < 3 => solution.outcome = Outcome::RankDeficient,
+        Some(_) => solution.outcome = Outcome::Solved,
+    }
+    Ok(solution)
+}
+
+/// The candidate slants for these tilts, and the one whose normals are most integrable (section 3.4, steps 4-8).
+fn choose(
+    image: &Image,
+    inliers: &Inliers,
+    ellipsoid: &Ellipsoid,
+    tilts: [f64; 3],
+    params: &Params,
+    workspace: &mut [f32],
+) -> Option<Choice> {
+    let orient = |slants| {
+        Orientation::new(orientation::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
+    };
+    let roots = constrained_slant::roots(tilts, ellipsoid.cosines);
+    let mut candidates = Vec::new();
+    for root in &roots {
+        let orientation = orient(root.slants);
+        let integral = if orientation.rank == 3 {
+            integrability::integral(image, |window| inliers.bits(window), &orientation.f_inverse)
+        } else {
+            None
+        };
+        let candidate = Candidate {
+            slants: root.slants,
+            branch: root.branch,
+            residual: root.residual,
+            integral: integral.map_or(f64::INFINITY, |integral| integral.mean),
+        };
+        // There are no more roots than candidates have room.
+        let _ = candidates.push(candidate);
+    }
+    let best = candidates.iter().enumerate().min_by(|(_, a), (_, b)| a.integral.total_cmp(&b.integral));
+    if let Some((chosen, &Candidate { slants, .. })) = best {
+        let orientation = orient(slants);
+        return Some(Choice { slants, source: SlantSource::Root, candidates, chosen, orientation });
+    }
+    let (slants, source) = fallback::slants(params.fallback, image, inliers, ellipsoid, tilts, workspace)?;
+    let orientation = orient(slants);
+    Some(Choice { slants, source, candidates, chosen: 0, orientation })
+}

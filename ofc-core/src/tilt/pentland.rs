@@ -1,0 +1,148 @@
+//! Pentland's tilt: the mean directional derivatives of a closed convex surface point to the light.
+//!
+//! # Reference
+//! Section 3.2, eqs. 20-21. A. P. Pentland, "Finding the illuminant direction", J. Opt. Soc. Am. 72, 1982.
+
+use super::{Tilts, has_direction};
+use crate::cells::{Block, for_each_block};
+use crate::differences::Differences;
+use crate::image::{Image, WINDOW, Window, for_each_bit};
+use core::f64::consts::FRAC_1_SQRT_2;
+use libm::{atan2, hypot};
+
+/// The mean difference along one direction.
+#[derive(Clone, Copy, Default)]
+struct Mean {
+    sums: [f64; 3],
+    count: u64,
+}
+
+impl Mean {
+    /// Adds the differences `to` - `from` of the pairs in `bits`, after `value`.
+    fn add(
+        &mut self,
+        bits: u64,
+        (to, to_shift): (&Window, usize),
+        (from, from_shift): (&Window, usize),
+        value: impl Fn(&Window, usize) -> [f64; 3],
+    ) {
+        let mut sums = [0.0; 3];
+        for_each_bit(bits, |i| {
+            let (to, from) = (value(to, i + to_shift), value(from, i + from_shift));
+            for ((sum, to), from) in sums.iter_mut().zip(to).zip(from) {
+                *sum += to - from;
+            }
+        });
+        for (total, sum) in self.sums.iter_mut().zip(sums) {
+            *total += sum;
+        }
+        self.count += u64::from(bits.count_ones());
+    }
+
+    fn mean(&self, channel: usize, distance_reciprocal: f64) -> Option<f64> {
+        let sum = self.sums.get(channel)?;
+        (self.count > 0).then(|| sum / self.count as f64 * distance_reciprocal)
+    }
+}
+
+/// The tilts from differences between neighbouring inliers along the axes and the diagonals.
+///
+/// `inliers` gives the bits of a window's inliers. `None` when a direction has no pair of inliers, or a channel's mean
+/// gradient is zero: then it has no tilt.
+pub fn tilts(image: &Image, inliers: impl Fn(&Window) -> u64) -> Option<Tilts> {
+    tilts_of(image, inliers, |window, i| window.pixel(i).map(f64::from))
+}
+
+/// The same of the picture that has `value` of every window's pixel in its place.
+pub fn tilts_of(
+    image: &Image,
+    inliers: impl Fn(&Window) -> u64,
+    value: impl Fn(&Window, usize) -> [f64; 3],
+) -> Option<Tilts> {
+    let (mut east, mut north, mut north_east, mut north_west) =
+        (Mean::default(), Mean::default(), Mean::default(), Mean::default());
+    for_each_block(image, inliers, |block: &Block| {
+        let (top, bottom) = (&block.top, &block.bottom);
+        east.add(block.horizontal(), (top, 1), (top, 0), &value);
+        north.add(block.vertical(), (top, 0), (bottom, 0), &value);
+        north_east.add(block.rising(), (top, 1), (bottom, 0), &value);
+        north_west.add(block.falling(), (top, 0), (bottom, 1), &value);
+    });
+    let mut result = Tilts { tilts: [0.0; 3], gradients: [[0.0; 2]; 3] };
+    for (channel, (tilt, gradient)) in result.tilts.iter_mut().zip(&mut result.gradients).enumerate() {
+        let (e, n) = (east.mean(channel, 1.0)?, north.mean(channel, 1.0)?);
+        let (ne, nw) = (north_east.mean(channel, FRAC_1_SQRT_2)?, north_west.mean(channel, FRAC_1_SQRT_2)?);
+        // Least squares of eq. 20 over the four unit directions, whose normal matrix is twice the identity.
+        let ix = 0.5 * (e + FRAC_1_SQRT_2 * (ne - nw));
+        let iy = 0.5 * (n + FRAC_1_SQRT_2 * (ne + nw));
+        if !has_direction(ix, iy) {
+            return None;
+        }
+        *tilt = atan2(iy, ix);
+        *gradient = [ix, iy];
+    }
+    Some(result)
+}
+
+/// Steps between pixels may be no longer than this along either axis.
+pub const MAX_STEP: i32 = 1024;
+
+/// The tilts from differences between inliers along any set of directions, each given as the step (right, up) from one
+/// pixel of a pair to the other.
+///
+/// `None` when a step has no pair of inliers, is zero or too long, all of them are parallel, or a channel's mean gradient
+/// is zero.
+pub fn tilts_along(image: &Image, inliers: impl Fn(&Window) -> u64, steps: &[[i32; 2]]) -> Option<Tilts> {
+    // Least squares of eq. 20: the normal matrix ((xx, xy), (xy, yy)), and the right side of each channel.
+    let ([mut xx, mut xy, mut yy], mut right) = ([0.0; 3], [[0.0; 2]; 3]);
+    for &[dx, dy] in steps {
+        if dx.abs().max(dy.abs()) > MAX_STEP {
+            return None;
+        }
+        let length = hypot(f64::from(dx), f64::from(dy));
+        let (x, y) = (f64::from(dx) / length, f64::from(dy) / length);
+        for ((mean, _), right) in
+            differences(image, &inliers, dx, dy).statistics(length)?.into_iter().zip(&mut right)
+        {
+            *right = [right[0] + x * mean, right[1] + y * mean];
+        }
+        (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
+    }
+    let determinant = xx * yy - xy * xy;
+    let parallel = determinant.is_nan() || determinant <= 1e-9 * xx.max(yy);
+    if parallel {
+        return None;
+    }
+    let mut result = Tilts { tilts: [0.0; 3], gradients: [[0.0; 2]; 3] };
+    for ((tilt, gradient), [a, b]) in result.tilts.iter_mut().zip(&mut result.gradients).zip(right) {
+        let (ix, iy) = ((yy * a - xy * b) / determinant, (xx * b - xy * a) / determinant);
+        if !has_direction(ix, iy) {
+            return None;
+        }
+        *tilt = atan2(iy, ix);
+        *gradient = [ix, iy];
+    }
+    Some(result)
+}
+
+/// The differences of all pairs of inliers one step apart.
+fn differences(image: &Image, inliers: impl Fn(&Window) -> u64, dx: i32, dy: i32) -> Differences {
+    // The pixel further up is in an earlier row; a step down is one up backwards.
+    let (rows, columns) = (dy.unsigned_abs() as usize, dx.unsigned_abs() as usize);
+    let upper_is_right = (dx > 0) == (dy > 0) || dy == 0;
+    let (mut upper, mut lower) = (Window::new(), Window::new());
+    let mut sums = Differences::default();
+    for y in 0..image.height().saturating_sub(rows) {
+        for x in (0..image.width().saturating_sub(columns)).step_by(WINDOW) {
+            let (left, right) = (x, x + columns);
+            let (upper_x, lower_x) = if upper_is_right { (right, left) } else { (left, right) };
+            image.read(upper_x, y, &mut upper);
+            image.read(lower_x, y + rows, &mut lower);
+            let bits = inliers(&upper) & inliers(&lower);
+            let ends_above = dy > 0 || (dy == 0 && dx > 0);
+            let (to, from) = if ends_above { (&upper, &lower) } else { (&lower, &upper) };
+            sums.add(bits, (to, 0), (from, 0));
+        }
+    }
+    sums
+}

@@ -1,0 +1,259 @@
+//! Whether to believe an answer: self-checks and ranks.
+
+use crate::image::{image, ofc_image};
+use crate::pointers::{Extent, Out, Plain, disjoint, input, workspace};
+use crate::regression::{accepted_by, float_bytes, floats, pixel_count};
+use crate::render::{ofc_depth_map, surface};
+use crate::solve::ofc_solution;
+use crate::status::{
+    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NOT_SOLVED, OFC_STATUS_OK, OFC_STATUS_TOO_FEW_PIXELS,
+    OFC_STATUS_WORKSPACE_TOO_SMALL, of, ofc_status,
+};
+use crate::types::{count, finite_matrix, ofc_color_fit, ofc_inliers, ofc_tilts};
+use core::ffi::c_void;
+use ofc_core::check::{self, Check, CheckError, Norms};
+use ofc_core::image::Window;
+use ofc_core::orientation::Orientation;
+use ofc_core::rank::{self, Rank};
+use ofc_core::regression::Estimate;
+
+/// How well an answer explains its own picture. How to read it:
+///
+/// - `correlation` near 1 says that the linear model holds: channels relit from the recovered normals look like the input.
+///   The paper's egg reaches 0.9989; 0.99 is usual for a photograph of a matte surface. It says nothing of F's orthogonal
+///   transformation, which cancels.
+/// - `tilt_residual_rad`, the tilts of F minus the tilts that Pentland's estimator finds in the input, are near zero when
+///   F follows the tilts of the picture. Large ones say that the slants are a compromise, or the surface is not convex.
+/// - `tilt_difference_rad`, the same estimator on the relit picture minus on the input, is near zero when normals and
+///   lights belong together.
+/// - `depth_angle_median_rad`, between the normals of the integrated surface and those of the colors, is a degree or two when
+///   the normals are those of one surface. More says that F is wrong, or that the surface has steps.
+/// - `depth_tilt_difference_rad`, Pentland's tilts of the surface shaded with F minus those of the input, are near zero when
+///   normals and lights belong together: a wrong surface shades differently.
+/// - `norm_median` is near 1 and the range narrow when most of the inliers obey the model.
+/// - `largest_p` above 0.05 says that a coefficient of C could as well be zero.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ofc_check_result {
+    /// Correlation of each channel with the relit one, over the inliers; 0 where one of them is constant.
+    pub correlation: [f64; 3],
+    /// Median length of the recovered normals before they are set to 1.
+    pub norm_median: f64,
+    /// Smallest length.
+    pub norm_min: f64,
+    /// Largest length.
+    pub norm_max: f64,
+    /// Pentland's tilts of the input; zero where there are none.
+    pub tilts: ofc_tilts,
+    /// Pentland's tilts of the relit picture; zero where there are none.
+    pub relit_tilts: ofc_tilts,
+    /// Tilts of the relit picture minus those of the input, in (-pi, pi]; zero where one has none.
+    pub tilt_difference_rad: [f64; 3],
+    /// Tilts of the rows of F minus those of the input, in (-pi, pi]; zero where it has none.
+    pub tilt_residual_rad: [f64; 3],
+    /// Median angle between the normals of the integrated surface and those of the colors; zero without a surface.
+    pub depth_angle_median_rad: f64,
+    /// Pentland's tilts of the integrated surface shaded with F; zero where there are none.
+    pub depth_tilts: ofc_tilts,
+    /// These minus the tilts of the input, in (-pi, pi]; zero where one has none.
+    pub depth_tilt_difference_rad: [f64; 3],
+    /// Largest p value of the six coefficients of C.
+    pub largest_p: f64,
+    /// Pixels that were compared.
+    pub inlier_count: i32,
+    /// 1 when both pictures have tilts, 0 otherwise.
+    pub has_tilts: i32,
+    /// Inliers that the integrated surface covers; zero without one.
+    pub depth_pixel_count: i32,
+    /// 1 when the shaded surface and the input have tilts, 0 otherwise.
+    pub has_depth_tilts: i32,
+}
+
+/// Effective ranks, and the singular values behind them. F can be recovered where both ranks are 3.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_rank {
+    /// Root mean square of the colors along their principal axes, descending, in pixel values.
+    pub color_deviations: [f64; 3],
+    /// The noise that they are compared with.
+    pub color_noise: f64,
+    /// Root mean square of the normals along their principal axes, descending; zero in directions that are not seen.
+    pub normal_deviations: [f64; 3],
+    /// The noise that they are compared with.
+    pub normal_noise: f64,
+    /// Of the colors, 1 to 3; 0 where there are no pixels.
+    pub colors: i32,
+    /// Of the normals, 1 to 3; 0 where the colors do not say: those of one light, or of a gray picture.
+    pub normals: i32,
+}
+
+// SAFETY: integers and floats.
+unsafe impl Plain for ofc_check_result {}
+// SAFETY: as above.
+unsafe impl Plain for ofc_rank {}
+
+impl From<Rank> for ofc_rank {
+    fn from(value: Rank) -> Self {
+        let Rank { colors, normals, color_deviations, color_noise, normal_deviations, normal_noise } = value;
+        Self {
+            color_deviations,
+            color_noise,
+            normal_deviations,
+            normal_noise,
+            colors: colors.cast_signed(),
+            normals: normals.map_or(0, u32::cast_signed),
+        }
+    }
+}
+
+impl From<Check> for ofc_check_result {
+    fn from(value: Check) -> Self {
+        let Check {
+            inliers,
+            correlations,
+            norms: Norms { median, min, max },
+            tilts,
+            relit_tilts,
+            tilt_differences,
+            tilt_residuals,
+            depth,
+            largest_p,
+        } = value;
+        let depth = depth.unwrap_or_default();
+        Self {
+            correlation: correlations,
+            norm_median: median,
+            norm_min: min,
+            norm_max: max,
+            tilts: tilts.map_or(ofc_tilts::default(), ofc_tilts::from),
+            relit_tilts: relit_tilts.map_or(ofc_tilts::default(), ofc_tilts::from),
+            tilt_difference_rad: tilt_differences.unwrap_or_default(),
+            tilt_residual_rad: tilt_residuals.unwrap_or_default(),
+            depth_angle_median_rad: depth.median_angle,
+            depth_tilts: depth.tilts.map_or(ofc_tilts::default(), ofc_tilts::from),
+            depth_tilt_difference_rad: depth.tilt_differences.unwrap_or_default(),
+            largest_p,
+            inlier_count: count(inliers),
+            has_tilts: i32::from(tilts.is_some() && relit_tilts.is_some()),
+            depth_pixel_count: count(depth.pixels),
+            has_depth_tilts: i32::from(depth.tilt_differences.is_some()),
+        }
+    }
+}
+
+/// Bytes of workspace that ofc_check() needs: 4 a pixel.
+///
+/// @return The size, or 0 when an argument is invalid.
+#[unsafe(no_mangle)]
+pub extern "C" fn ofc_check_workspace_size(width: i32, height: i32) -> usize {
+    float_bytes(check::workspace_len(pixel_count(width, height)))
+}
+
+/// Checks a solution against its own picture; the struct says how to read the result.
+///
+/// @param image      The picture that was solved, or another frame under the same lights.
+/// @param solution   What ofc_solve() wrote with OFC_STATUS_OK.
+/// @param depth      The surface that ofc_depth_integrate() made of the normals, as large as the picture; may be NULL. There
+///                   is no surface where its depth is not finite.
+/// @param workspace  ofc_check_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter.
+/// @param workspace_bytes  Its size.
+/// @param result     Output.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_TOO_FEW_PIXELS when there are no inliers;
+///         OFC_STATUS_INVALID_PARAMETER for a surface of another size; the status of an invalid argument.
+///
+/// Reference: sections 4-6.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_check(
+    image: *const ofc_image,
+    solution: *const ofc_solution,
+    depth: *const ofc_depth_map,
+    workspace: *mut c_void,
+    workspace_bytes: usize,
+    result: *mut ofc_check_result,
+) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let picture = unsafe { self::image(image) }?;
+        let (solution, solution_extent) = input(solution)?;
+        let (surface, [f, g, h]) = if depth.is_null() {
+            (None, [Extent::NOTHING; 3])
+        } else {
+            // SAFETY: the contract of this function.
+            let (surface, extents) = unsafe { self::surface(depth) }?;
+            (Some(surface), extents)
+        };
+        let view = &picture.view;
+        let need = float_bytes(check::workspace_len(view.width() * view.height()));
+        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
+        let out = Out::new(result)?;
+        let [a, b, c, d, e] = picture.extents;
+        disjoint(&[scratch, out.extent], &[a, b, c, d, e, f, g, h, solution_extent])?;
+        if solution.outcome != OFC_STATUS_OK {
+            return Err(OFC_STATUS_NOT_SOLVED);
+        }
+        let orientation = Orientation {
+            f: finite_matrix(solution.orientation.f)?,
+            f_inverse: finite_matrix(solution.orientation.f_inverse)?,
+            singular_values: solution.orientation.singular_values,
+            rank: u32::try_from(solution.orientation.rank).unwrap_or(0),
+        };
+        let coefficients = solution.fit.coefficients.map(Estimate::from);
+        let test = solution.inliers.into_core();
+        // SAFETY: checked and disjoint.
+        let scratch = unsafe { floats(workspace, need) };
+        let inliers = |window: &Window| test.bits(window);
+        let found = check::check(view, inliers, &orientation, &coefficients, surface.as_ref(), scratch);
+        out.write(found.map_err(of_check_error)?.into());
+        Ok(OFC_STATUS_OK)
+    };
+    of(body())
+}
+
+const fn of_check_error(error: CheckError) -> ofc_status {
+    match error {
+        CheckError::Orientation => OFC_STATUS_NOT_SOLVED,
+        CheckError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
+        CheckError::Size => OFC_STATUS_INVALID_PARAMETER,
+        CheckError::NoInliers => OFC_STATUS_TOO_FEW_PIXELS,
+    }
+}
+
+/// The effective ranks of a picture's colors and normals.
+///
+/// @param image    The picture.
+/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+/// @param fit      The regression over them, from ofc_lmeds_fit(); NULL where it was refused.
+/// @param rank     Output.
+/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS when there is no inlier; OFC_STATUS_INVALID_PARAMETER for a fit that
+///         is not finite; the status of an invalid argument.
+///
+/// Reference: sections 2 and 6; A. P. Petrov, L. L. Kontsevich, JOSA A 11, 1994.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_rank_compute(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    fit: *const ofc_color_fit,
+    rank: *mut ofc_rank,
+) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let picture = unsafe { self::image(image) }?;
+        let (test, test_extent) = accepted_by(inliers, &picture)?;
+        let (fit, fit_extent) = if fit.is_null() {
+            (None, Extent::NOTHING)
+        } else {
+            let (fit, extent) = input(fit)?;
+            (Some((fit.coefficients.map(|c| c.value), fit.residual_deviation)), extent)
+        };
+        let out = Out::new(rank)?;
+        let [a, b, c, d, e] = picture.extents;
+        disjoint(&[out.extent], &[a, b, c, d, e, test_extent, fit_extent])?;
+        if fit.is_some_and(|(z, deviation)| !(z.iter().all(|c| c.is_finite()) && deviation >= 0.0)) {
+            return Err(OFC_STATUS_INVALID_PARAMETER);
+        }
+        let found = rank::rank(&picture.view, |window| test.bits(window), fit);
+        out.write(found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?.into());
+        Ok(OFC_STATUS_OK)
+    };
+    of(body())
+}

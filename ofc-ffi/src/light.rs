@@ -1,0 +1,412 @@
+//! Estimators of the direction and strength of each channel's equivalent light.
+
+use crate::image::{dimension, image, ofc_image};
+use crate::pointers::{Out, Plain, disjoint, extent, input, input_slice, output_slice, workspace};
+use crate::regression::{accepted_by, float_bytes, floats, pixel_count};
+use crate::status::{
+    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_TILT, OFC_STATUS_OK, OFC_STATUS_TOO_FEW_PIXELS, of,
+    ofc_status,
+};
+use crate::types::{count, ofc_inliers, ofc_tilts};
+use core::ffi::c_void;
+use ofc_core::channel_maxima;
+use ofc_core::image::Image;
+use ofc_core::inliers::Inliers;
+use ofc_core::slant::{self, Estimate, Reach};
+use ofc_core::tilt::{Tilts, chojnacki, lee_rosenfeld, pentland, zheng_chellappa};
+
+/// An estimator of tilts, for ofc_solve_params: one of OFC_TILT_*.
+pub type ofc_tilt_estimator = i32;
+/// Pentland's, along the axes and the diagonals (eqs. 20-21).
+pub const OFC_TILT_PENTLAND: i32 = 0;
+/// Lee and Rosenfeld's.
+pub const OFC_TILT_LEE_ROSENFELD: i32 = 1;
+/// Zheng and Chellappa's.
+pub const OFC_TILT_ZHENG_CHELLAPPA: i32 = 2;
+/// Chojnacki, Brooks and Gibbins', over the largest disc inside the inliers.
+pub const OFC_TILT_CHOJNACKI: i32 = 3;
+/// The caller's own.
+pub const OFC_TILT_GIVEN: i32 = 4;
+
+/// Where the statistic behind a slant lies: one of OFC_REACH_*.
+pub type ofc_reach = i32;
+/// In the range of the method's equation: the slant solves it.
+pub const OFC_REACH_INSIDE: i32 = 0;
+/// Beyond its value at slant 0, which is the answer: the zeros of Tables 1 and 2.
+pub const OFC_REACH_BELOW_ZERO: i32 = 1;
+/// Beyond its value at the largest slant, which is the answer.
+pub const OFC_REACH_ABOVE_LARGEST: i32 = 2;
+
+/// A disc of pixels.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ofc_disc {
+    /// Column of the middle pixel.
+    pub x: i32,
+    /// Row of the middle pixel.
+    pub y: i32,
+    /// The disc's pixels are less than the root of this many pixels away from the middle one.
+    pub radius_squared: u64,
+}
+
+/// The slant of one channel's light, as an estimator sees it without help from the other channels.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ofc_slant_estimate {
+    /// From +z.
+    pub slant_rad: f64,
+    /// What it was computed from: the cosine for Pentland, root mean square over mean for Lee and Rosenfeld, mean over
+    /// root mean square for Zheng and Chellappa.
+    pub statistic: f64,
+    /// Whether the method's equation has a root, one of OFC_REACH_*.
+    pub reach: ofc_reach,
+    /// Zero.
+    pub reserved: u32,
+}
+
+// SAFETY: integers.
+unsafe impl Plain for ofc_disc {}
+// SAFETY: integers and floats.
+unsafe impl Plain for ofc_slant_estimate {}
+
+impl From<Estimate> for ofc_slant_estimate {
+    fn from(estimate: Estimate) -> Self {
+        let Estimate { slant, statistic, reach } = estimate;
+        let reach = match reach {
+            Reach::Inside => OFC_REACH_INSIDE,
+            Reach::BelowZero => OFC_REACH_BELOW_ZERO,
+            Reach::AboveLargest => OFC_REACH_ABOVE_LARGEST,
+        };
+        Self { slant_rad: slant, statistic, reach, reserved: 0 }
+    }
+}
+
+/// The common body of the estimators of tilts.
+///
+/// # Safety
+/// As the calls that use it.
+unsafe fn estimate_tilts(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    tilts: *mut ofc_tilts,
+    estimate: impl Fn(&Image, &Inliers) -> Option<Tilts>,
+) -> Result<ofc_status, ofc_status> {
+    // SAFETY: the contract of the caller.
+    let picture = unsafe { self::image(image) }?;
+    let (test, test_extent) = accepted_by(inliers, &picture)?;
+    let out = Out::new(tilts)?;
+    let [a, b, c, d, e] = picture.extents;
+    disjoint(&[out.extent], &[a, b, c, d, e, test_extent])?;
+    out.write(estimate(&picture.view, &test).ok_or(OFC_STATUS_NO_TILT)?.into());
+    Ok(OFC_STATUS_OK)
+}
+
+fn alone(tilts: [f64; 3]) -> Tilts {
+    Tilts { tilts, gradients: [[0.0; 2]; 3] }
+}
+
+/// Pentland's tilts of the three channels' equivalent lights, from mean differences between neighbouring inliers along
+/// the axes and diagonals; for a closed convex surface.
+///
+/// @param image    The picture.
+/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+/// @param tilts    Output.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_TILT, `tilts` untouched; the status of an invalid argument.
+///
+/// Reference: section 3.2, eqs. 20-21; A. P. Pentland, "Finding the illuminant direction", JOSA 72, 1982.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_tilt_pentland(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    tilts: *mut ofc_tilts,
+) -> ofc_status {
+    // SAFETY: the contract of this function.
+    of(unsafe {
+        estimate_tilts(image, inliers, tilts, |image, test| {
+            pentland::tilts(image, |window| test.bits(window))
+        })
+    })
+}
+
+/// Pentland's tilts along any set of directions.
+///
+/// @param image    The picture.
+/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+/// @param steps    `count` pairs (right, up): the step from one pixel of a pair to the other, up to 1024 either way.
+/// @param count    How many, 2 to 64; not all parallel.
+/// @param tilts    Output.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_TILT, `tilts` untouched, also for steps that are zero, too long or parallel;
+///         OFC_STATUS_INVALID_PARAMETER for a bad count; the status of an invalid argument.
+///
+/// Reference: section 3.2, eqs. 20-21.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_tilt_pentland_along(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    steps: *const i32,
+    count: i32,
+    tilts: *mut ofc_tilts,
+) -> ofc_status {
+    let body = || {
+        let count = dimension(count);
+        extent(steps, 1)?;
+        if !(2..=64).contains(&count) {
+            return Err(OFC_STATUS_INVALID_PARAMETER);
+        }
+        // SAFETY: the contract of this function.
+        let (steps, steps_extent) = unsafe { input_slice(steps, count * 2) }?;
+        disjoint(&[Out::new(tilts)?.extent], &[steps_extent])?;
+        let (steps, _) = steps.as_chunks::<2>();
+        // SAFETY: the contract of this function.
+        unsafe {
+            estimate_tilts(image, inliers, tilts, |image, test| {
+                pentland::tilts_along(image, |window| test.bits(window), steps)
+            })
+        }
+    };
+    of(body())
+}
+
+/// Lee and Rosenfeld's tilts: Pentland's with the axes alone.
+///
+/// @param image    The picture.
+/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+/// @param tilts    Output.
+/// @return As ofc_tilt_pentland().
+///
+/// Reference: section 3.2; C.-H. Lee, A. Rosenfeld, Artificial Intelligence 26, 1985.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_tilt_lee_rosenfeld(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    tilts: *mut ofc_tilts,
+) -> ofc_status {
+    // SAFETY: the contract of this function.
+    of(unsafe {
+        estimate_tilts(image, inliers, tilts, |image, test| {
+            lee_rosenfeld::tilts(image, |window| test.bits(window)).map(alone)
+        })
+    })
+}
+
+/// Zheng and Chellappa's tilts: every neighbourhood votes with the direction of its own gradient.
+///
+/// @param image    The picture.
+/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+/// @param tilts    Output.
+/// @return As ofc_tilt_pentland().
+///
+/// Reference: Q. Zheng, R. Chellappa, "Estimation of illuminant direction, albedo, and shape from shading", PAMI 13,
+/// 1991.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_tilt_zheng_chellappa(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    tilts: *mut ofc_tilts,
+) -> ofc_status {
+    // SAFETY: the contract of this function.
+    of(unsafe {
+        estimate_tilts(image, inliers, tilts, |image, test| {
+            zheng_chellappa::tilts(image, |window| test.bits(window)).map(alone)
+        })
+    })
+}
+
+/// Chojnacki, Brooks and Gibbins' tilts: mean derivatives over a disc that is free of shadows.
+///
+/// @param image    The picture.
+/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+/// @param disc     The disc, given or found by ofc_largest_disc().
+/// @param tilts    Output.
+/// @return As ofc_tilt_pentland(); OFC_STATUS_INVALID_PARAMETER for a disc whose middle has a negative coordinate.
+///
+/// Reference: W. Chojnacki, M. J. Brooks, D. Gibbins, "Revisiting Pentland's estimator of light source direction", JOSA
+/// A 11, 1994.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_tilt_chojnacki(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    disc: *const ofc_disc,
+    tilts: *mut ofc_tilts,
+) -> ofc_status {
+    let body = || {
+        let (disc, disc_extent) = input(disc)?;
+        disjoint(&[Out::new(tilts)?.extent], &[disc_extent])?;
+        let (Ok(x), Ok(y)) = (usize::try_from(disc.x), usize::try_from(disc.y)) else {
+            return Err(OFC_STATUS_INVALID_PARAMETER);
+        };
+        let disc = chojnacki::Disc { x, y, radius_squared: disc.radius_squared };
+        // SAFETY: the contract of this function.
+        unsafe {
+            estimate_tilts(image, inliers, tilts, |image, test| {
+                chojnacki::tilts(image, |window| test.bits(window), &disc).map(alone)
+            })
+        }
+    };
+    of(body())
+}
+
+/// Bytes of workspace that ofc_largest_disc() needs: 4 a pixel.
+///
+/// @return The size, or 0 when an argument is invalid.
+#[unsafe(no_mangle)]
+pub extern "C" fn ofc_largest_disc_workspace_size(width: i32, height: i32) -> usize {
+    float_bytes(chojnacki::workspace_len(pixel_count(width, height)))
+}
+
+/// The largest disc inside the inliers; outliers that are not part of a square of four do not count.
+///
+/// @param image      The picture.
+/// @param inliers    The pixels to use; NULL for every usable pixel of the picture.
+/// @param workspace  ofc_largest_disc_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter.
+/// @param workspace_bytes  Its size.
+/// @param disc       Output.
+/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS when there is no inlier; the status of an invalid argument.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_largest_disc(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    workspace: *mut c_void,
+    workspace_bytes: usize,
+    disc: *mut ofc_disc,
+) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let picture = unsafe { self::image(image) }?;
+        let (test, test_extent) = accepted_by(inliers, &picture)?;
+        let view = &picture.view;
+        let need = float_bytes(chojnacki::workspace_len(view.width() * view.height()));
+        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
+        let out = Out::new(disc)?;
+        let [a, b, c, d, e] = picture.extents;
+        disjoint(&[scratch, out.extent], &[a, b, c, d, e, test_extent])?;
+        // SAFETY: checked and disjoint.
+        let scratch = unsafe { floats(workspace, need) };
+        let found = chojnacki::largest_disc(view, |window| test.bits(window), scratch);
+        let chojnacki::Disc { x, y, radius_squared } = found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
+        out.write(ofc_disc { x: count(x), y: count(y), radius_squared });
+        Ok(OFC_STATUS_OK)
+    };
+    of(body())
+}
+
+/// The common body of the estimators of slants.
+///
+/// # Safety
+/// As the calls that use it.
+unsafe fn estimate_slants(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    slants: *mut ofc_slant_estimate,
+    estimate: impl Fn(&Image, &Inliers) -> Option<[Estimate; 3]>,
+) -> Result<ofc_status, ofc_status> {
+    // SAFETY: the contract of the caller.
+    let picture = unsafe { self::image(image) }?;
+    let (test, test_extent) = accepted_by(inliers, &picture)?;
+    let out_extent = extent(slants.cast_const(), 3)?;
+    let [a, b, c, d, e] = picture.extents;
+    disjoint(&[out_extent], &[a, b, c, d, e, test_extent])?;
+    let found = estimate(&picture.view, &test).ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
+    // SAFETY: checked and disjoint.
+    let out = unsafe { output_slice(slants, 3) };
+    for (slot, estimate) in out.iter_mut().zip(found) {
+        *slot = estimate.into();
+    }
+    Ok(OFC_STATUS_OK)
+}
+
+/// Pentland's slants, each channel for itself: the paper's Tables show how unreliable they are.
+///
+/// @param image    The picture.
+/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+/// @param slants   Output: three structs, r, g, b.
+/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS; the status of an invalid argument.
+///
+/// Reference: section 3.2, eq. 22.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_slant_pentland(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    slants: *mut ofc_slant_estimate,
+) -> ofc_status {
+    // SAFETY: the contract of this function.
+    of(unsafe {
+        estimate_slants(image, inliers, slants, |image, test| {
+            slant::pentland::slants(image, |window| test.bits(window))
+        })
+    })
+}
+
+/// Lee and Rosenfeld's slants, in [0, pi), from the ratio of root mean square to mean; below 3 / (2 sqrt 2) = 1.0607 the
+/// answer is 0 with OFC_REACH_BELOW_ZERO.
+///
+/// @param image    The picture.
+/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+/// @param slants   Output: three structs, r, g, b.
+/// @return As ofc_slant_pentland().
+///
+/// Reference: section 3.2, eq. 23.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_slant_lee_rosenfeld(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    slants: *mut ofc_slant_estimate,
+) -> ofc_status {
+    // SAFETY: the contract of this function.
+    of(unsafe {
+        estimate_slants(image, inliers, slants, |image, test| {
+            slant::lee_rosenfeld::slants(image, |window| test.bits(window))
+        })
+    })
+}
+
+/// Zheng and Chellappa's slants, which take shadows into account: the pixels are those of the picture's mask, black ones
+/// included.
+///
+/// @param image    The picture; its mask is the object.
+/// @param slants   Output: three structs, r, g, b.
+/// @return As ofc_slant_pentland().
+///
+/// Reference: Q. Zheng, R. Chellappa, PAMI 13, 1991.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_slant_zheng_chellappa(
+    image: *const ofc_image,
+    slants: *mut ofc_slant_estimate,
+) -> ofc_status {
+    // SAFETY: the contract of this function.
+    of(unsafe {
+        estimate_slants(image, core::ptr::null(), slants, |image, _| {
+            slant::zheng_chellappa::slants(image, |window| {
+                window.masked & window.bits(|r, g, b| r.is_finite() & g.is_finite() & b.is_finite())
+            })
+        })
+    })
+}
+
+/// The largest value of each channel: the lengths of the rows of F where some normal faces each light.
+///
+/// @param image    The picture.
+/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
+/// @param norms    Output: three numbers, r, g, b.
+/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS when there is no inlier; the status of an invalid argument.
+///
+/// Reference: section 4, last rows of Tables 1 and 2.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_channel_maxima(
+    image: *const ofc_image,
+    inliers: *const ofc_inliers,
+    norms: *mut f64,
+) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let picture = unsafe { self::image(image) }?;
+        let (test, test_extent) = accepted_by(inliers, &picture)?;
+        let out = Out::new(norms.cast::<[f64; 3]>())?;
+        let [a, b, c, d, e] = picture.extents;
+        disjoint(&[out.extent], &[a, b, c, d, e, test_extent])?;
+        let found = channel_maxima::norms(&picture.view, |window| test.bits(window));
+        out.write(found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?);
+        Ok(OFC_STATUS_OK)
+    };
+    of(body())
+}

@@ -1,0 +1,145 @@
+//! Slants from tilts and angles.
+
+use crate::pointers::{Out, disjoint, extent, input_array, output_slice};
+use crate::status::{
+    OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_CONSISTENT_SLANTS, OFC_STATUS_OK, of,
+    ofc_status,
+};
+use crate::types::ofc_slants;
+use core::f64::consts::FRAC_PI_2;
+use ofc_core::constrained_slant;
+
+/// No more slants than this are consistent with three tilts and three cosines.
+pub const OFC_MAX_CANDIDATES: usize = 8;
+const _: () =
+    assert!(OFC_MAX_CANDIDATES == constrained_slant::MAX_CANDIDATES, "the header says what the core does");
+
+/// A tilt is any finite angle, a cosine is in [-1, 1].
+pub(crate) fn are_valid(tilts: [f64; 3], cosines: [f64; 3]) -> Result<(), ofc_status> {
+    let valid = tilts.iter().all(|tilt| tilt.is_finite()) && cosines.iter().all(|h| (-1.0..=1.0).contains(h));
+    if valid { Ok(()) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
+}
+
+/// All slants in [0, pi/2] that are consistent with three tilts and the angles between the rows of F: every solution of
+/// eqs. 24, on all eight branches of eqs. 25.
+///
+/// @param tilt_rad    Three tilts.
+/// @param cosines     (h12, h13, h23), each in [-1, 1].
+/// @param candidates  Output: OFC_MAX_CANDIDATES structs, of which the first `count` are written, by ascending first
+///                    slant; their `integral` is 0.
+/// @param count       Output.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_CONSISTENT_SLANTS, with a count of 0; OFC_STATUS_INVALID_PARAMETER; the status
+///         of an invalid argument.
+///
+/// Reference: sections 3.2-3.3, eqs. 24-25.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_constrained_slants_find(
+    tilt_rad: *const f64,
+    cosines: *const f64,
+    candidates: *mut ofc_slants,
+    count: *mut i32,
+) -> ofc_status {
+    let body = || {
+        let (tilts, tilts_extent) = input_array::<f64, 3>(tilt_rad)?;
+        let (cosines, cosines_extent) = input_array::<f64, 3>(cosines)?;
+        let candidates_extent = extent(candidates.cast_const(), OFC_MAX_CANDIDATES)?;
+        let count = Out::new(count)?;
+        disjoint(&[candidates_extent, count.extent], &[tilts_extent, cosines_extent])?;
+        are_valid(tilts, cosines)?;
+        let roots = constrained_slant::roots(tilts, cosines);
+        // SAFETY: checked and disjoint.
+        let out = unsafe { output_slice(candidates, OFC_MAX_CANDIDATES) };
+        for (slot, root) in out.iter_mut().zip(&roots) {
+            *slot = ofc_slants {
+                slant_rad: root.slants,
+                residual: root.residual,
+                integral: 0.0,
+                branch: i32::from(root.branch),
+                reserved: 0,
+            };
+        }
+        count.write(crate::types::count(roots.len()));
+        Ok(if roots.is_empty() { OFC_STATUS_NO_CONSISTENT_SLANTS } else { OFC_STATUS_OK })
+    };
+    of(body())
+}
+
+/// The slants in [0, pi/2] that satisfy eqs. 24 best in least squares: what solve falls back on where they have no
+/// common solution.
+///
+/// @param tilt_rad  Three tilts.
+/// @param cosines   (h12, h13, h23), each in [-1, 1].
+/// @param slants    Output; branch and integral are 0.
+/// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+///
+/// Reference: eq. 24.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_constrained_slants_nearest(
+    tilt_rad: *const f64,
+    cosines: *const f64,
+    slants: *mut ofc_slants,
+) -> ofc_status {
+    let body = || {
+        let (tilts, tilts_extent) = input_array::<f64, 3>(tilt_rad)?;
+        let (cosines, cosines_extent) = input_array::<f64, 3>(cosines)?;
+        let out = Out::new(slants)?;
+        disjoint(&[out.extent], &[tilts_extent, cosines_extent])?;
+        are_valid(tilts, cosines)?;
+        let nearest = constrained_slant::least_squares(tilts, cosines);
+        out.write(ofc_slants {
+            slant_rad: nearest.slants,
+            residual: nearest.residuals.iter().fold(0.0, |largest, residual| residual.abs().max(largest)),
+            integral: 0.0,
+            branch: 0,
+            reserved: 0,
+        });
+        Ok(OFC_STATUS_OK)
+    };
+    of(body())
+}
+
+/// Samples f(sigma1) on one branch of eqs. 25, the curve of Figures 2 and 4(a): where it meets sigma1 itself is a
+/// solution, if the other slants are in range.
+///
+/// @param tilt_rad    Three tilts.
+/// @param cosines     (h12, h13, h23), each in [-1, 1].
+/// @param branch      1 to 8: the signs of the square roots, 1 for (+,+,+) and 8 for (-,-,-).
+/// @param count       How many samples, at least 2, evenly over [0, pi/2] with both ends.
+/// @param sigma1_rad  Output: `count` values.
+/// @param f_rad       Output: `count` values, NaN where a square root has no real value.
+/// @return OFC_STATUS_OK; OFC_STATUS_EMPTY for fewer than two samples; OFC_STATUS_INVALID_PARAMETER; the status of an
+///         invalid argument.
+///
+/// Reference: section 3.3, eqs. 25.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_slant_curve_sample(
+    tilt_rad: *const f64,
+    cosines: *const f64,
+    branch: i32,
+    count: i32,
+    sigma1_rad: *mut f64,
+    f_rad: *mut f64,
+) -> ofc_status {
+    let body = || {
+        let (tilts, tilts_extent) = input_array::<f64, 3>(tilt_rad)?;
+        let (cosines, cosines_extent) = input_array::<f64, 3>(cosines)?;
+        let samples = crate::image::dimension(count);
+        let (sigma_extent, f_extent) =
+            (extent(sigma1_rad.cast_const(), samples)?, extent(f_rad.cast_const(), samples)?);
+        disjoint(&[sigma_extent, f_extent], &[tilts_extent, cosines_extent])?;
+        if samples < 2 {
+            return Err(OFC_STATUS_EMPTY);
+        }
+        are_valid(tilts, cosines)?;
+        let branch =
+            u8::try_from(branch).ok().filter(|b| (1..=8).contains(b)).ok_or(OFC_STATUS_INVALID_PARAMETER)?;
+        // SAFETY: checked and disjoint.
+        let (sigmas, values) = unsafe { (output_slice(sigma1_rad, samples), output_slice(f_rad, samples)) };
+        for (i, (sigma, value)) in sigmas.iter_mut().zip(values).enumerate() {
+            *sigma = FRAC_PI_2 * i as f64 / (samples - 1) as f64;
+            *value = constrained_slant::curve(branch, *sigma, tilts, cosines).unwrap_or(f64::NAN);
+        }
+        Ok(OFC_STATUS_OK)
+    };
+    of(body())
+}

@@ -1,0 +1,298 @@
+//! The whole pipeline.
+
+use crate::check::ofc_rank;
+use crate::image::{image, ofc_image};
+use crate::light::{
+    OFC_TILT_CHOJNACKI, OFC_TILT_GIVEN, OFC_TILT_LEE_ROSENFELD, OFC_TILT_PENTLAND, OFC_TILT_ZHENG_CHELLAPPA,
+    ofc_tilt_estimator,
+};
+use crate::pointers::{Extent, Out, Plain, disjoint, extent, input, output_slice, workspace};
+use crate::regression::{float_bytes, floats, pixel_count};
+use crate::slants::OFC_MAX_CANDIDATES;
+use crate::status::{
+    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO, of, of_fit_error, of_outcome,
+    ofc_status,
+};
+use crate::types::{
+    count, ofc_census, ofc_color_fit, ofc_ellipsoid, ofc_inliers, ofc_lmeds_params, ofc_location,
+    ofc_orientation, ofc_slants, ofc_tilts,
+};
+use core::ffi::c_void;
+use ofc_core::solve::{self, Candidate, Params, SlantFallback, SlantSource, Solution};
+use ofc_core::tilt::TiltEstimator;
+
+/// Where the slants come from: one of OFC_SLANTS_*.
+pub type ofc_slant_source = i32;
+/// There are none.
+pub const OFC_SLANTS_NONE: i32 = 0;
+/// A root of eqs. 25, chosen by the integral (15).
+pub const OFC_SLANTS_ROOT: i32 = 1;
+/// There is no root: least squares over eqs. 24.
+pub const OFC_SLANTS_LEAST_SQUARES: i32 = 2;
+/// There is no root: the least integral (15) that eqs. 24 allow.
+pub const OFC_SLANTS_TILT_INTEGRABILITY: i32 = 3;
+/// There is no root: Pentland's slants, eq. 22.
+pub const OFC_SLANTS_PENTLAND: i32 = 4;
+/// There is no root: Lee and Rosenfeld's slants, eq. 23.
+pub const OFC_SLANTS_LEE_ROSENFELD: i32 = 5;
+/// There is no root: Zheng and Chellappa's slants.
+pub const OFC_SLANTS_ZHENG_CHELLAPPA: i32 = 6;
+
+/// What to do where eqs. 25 have no root: one of OFC_FALLBACK_*.
+pub type ofc_slant_fallback = i32;
+/// Return OFC_STATUS_NO_CONSISTENT_SLANTS.
+pub const OFC_FALLBACK_REFUSE: i32 = 0;
+/// Take the slants that satisfy eqs. 24 best.
+pub const OFC_FALLBACK_LEAST_SQUARES: i32 = 1;
+/// Take those that make the integral (15) smallest among the ones that eqs. 24 do not rule out.
+pub const OFC_FALLBACK_TILT_INTEGRABILITY: i32 = 2;
+/// Take Pentland's, eq. 22.
+pub const OFC_FALLBACK_PENTLAND: i32 = 3;
+/// Take Lee and Rosenfeld's, eq. 23.
+pub const OFC_FALLBACK_LEE_ROSENFELD: i32 = 4;
+/// Take Zheng and Chellappa's.
+pub const OFC_FALLBACK_ZHENG_CHELLAPPA: i32 = 5;
+
+/// What ofc_solve() does. Set by ofc_solve_params_default().
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ofc_solve_params {
+    /// The regression in color space, with the seed and the saturation level.
+    pub lmeds: ofc_lmeds_params,
+    /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
+    pub rank_threshold: f64,
+    /// The tilts of the rows of F, for OFC_TILT_GIVEN; otherwise they do not matter. Default 0.
+    pub tilt_rad: [f64; 3],
+    /// Where the tilts come from, one of OFC_TILT_*. Default OFC_TILT_PENTLAND.
+    pub tilt_estimator: ofc_tilt_estimator,
+    /// What to do where eqs. 25 have no root, one of OFC_FALLBACK_*. Default OFC_FALLBACK_LEAST_SQUARES.
+    pub slant_fallback: ofc_slant_fallback,
+    /// Must be zero.
+    pub reserved: [u32; 6],
+}
+
+/// What ofc_solve() found. On a positive status the fields of the stages that were not reached are zero.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ofc_solution {
+    /// The status that ofc_solve() returned with this solution.
+    pub outcome: ofc_status,
+    /// Where the slants come from, one of OFC_SLANTS_*.
+    pub slant_source: ofc_slant_source,
+    /// How many candidates there are.
+    pub candidate_count: i32,
+    /// Which of them was chosen; -1 for none.
+    pub chosen: i32,
+    /// Inliers after both rejections.
+    pub inlier_count: i32,
+    /// Zero.
+    pub reserved: u32,
+    /// What became of the pixels before the fit.
+    pub census: ofc_census,
+    /// The regression: C with its errors, dispersion, R^2, inliers after the first rejection.
+    pub fit: ofc_color_fit,
+    /// Effective ranks of the colors and normals of the inliers: F can be recovered where both are 3.
+    pub rank: ofc_rank,
+    /// Location of the lengths of the normals: the second rejection.
+    pub norm_location: ofc_location,
+    /// The test for inliers after both rejections.
+    pub inliers: ofc_inliers,
+    /// C, its root, and the norms and cosines of the rows of F.
+    pub ellipsoid: ofc_ellipsoid,
+    /// Tilts of the rows of F.
+    pub tilts: ofc_tilts,
+    /// Slants of the rows of F, from +z in [0, pi/2].
+    pub slant_rad: [f64; 3],
+    /// All slants consistent with the tilts, by ascending first slant.
+    pub candidates: [ofc_slants; OFC_MAX_CANDIDATES],
+    /// F and its inverse.
+    pub orientation: ofc_orientation,
+}
+
+// SAFETY: integers and floats.
+unsafe impl Plain for ofc_solve_params {}
+// SAFETY: as above.
+unsafe impl Plain for ofc_solution {}
+
+impl ofc_solve_params {
+    fn defaults() -> Self {
+        let Params { lmeds: _, saturation: _, tilts: _, rank_threshold, fallback: _ } = Params::default();
+        Self {
+            lmeds: ofc_lmeds_params::defaults(),
+            rank_threshold,
+            tilt_rad: [0.0; 3],
+            tilt_estimator: OFC_TILT_PENTLAND,
+            slant_fallback: OFC_FALLBACK_LEAST_SQUARES,
+            reserved: [0; 6],
+        }
+    }
+
+    fn check(self) -> Result<Params, ofc_status> {
+        let Self { lmeds, rank_threshold, tilt_rad, tilt_estimator, slant_fallback, reserved } = self;
+        if reserved != [0; 6] {
+            return Err(OFC_STATUS_RESERVED_NOT_ZERO);
+        }
+        let (lmeds, saturation) = lmeds.check()?;
+        let fallback = match slant_fallback {
+            OFC_FALLBACK_REFUSE => SlantFallback::Refuse,
+            OFC_FALLBACK_LEAST_SQUARES => SlantFallback::LeastSquares,
+            OFC_FALLBACK_TILT_INTEGRABILITY => SlantFallback::TiltIntegrability,
+            OFC_FALLBACK_PENTLAND => SlantFallback::PentlandSlant,
+            OFC_FALLBACK_LEE_ROSENFELD => SlantFallback::LeeRosenfeldSlant,
+            OFC_FALLBACK_ZHENG_CHELLAPPA => SlantFallback::ZhengChellappaSlant,
+            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
+        };
+        let tilts = match tilt_estimator {
+            OFC_TILT_PENTLAND => TiltEstimator::Pentland,
+            OFC_TILT_LEE_ROSENFELD => TiltEstimator::LeeRosenfeld,
+            OFC_TILT_ZHENG_CHELLAPPA => TiltEstimator::ZhengChellappa,
+            OFC_TILT_CHOJNACKI => TiltEstimator::Chojnacki,
+            OFC_TILT_GIVEN => TiltEstimator::Given(tilt_rad),
+            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
+        };
+        let params = Params { lmeds, saturation, tilts, rank_threshold, fallback };
+        if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
+    }
+}
+
+impl From<Candidate> for ofc_slants {
+    fn from(candidate: Candidate) -> Self {
+        let Candidate { slants, branch, residual, integral } = candidate;
+        Self { slant_rad: slants, residual, integral, branch: i32::from(branch), reserved: 0 }
+    }
+}
+
+impl From<&Solution> for ofc_solution {
+    fn from(solution: &Solution) -> Self {
+        let Solution {
+            outcome,
+            census,
+            color_deviations,
+            rank,
+            fit,
+            norm_location,
+            inliers,
+            inlier_count,
+            ellipsoid,
+            tilts,
+            choice,
+        } = solution;
+        let unfitted = ofc_color_fit { color_deviations: *color_deviations, ..ofc_color_fit::default() };
+        let mut result = Self {
+            outcome: of_outcome(*outcome),
+            slant_source: OFC_SLANTS_NONE,
+            candidate_count: 0,
+            chosen: -1,
+            inlier_count: count(*inlier_count),
+            reserved: 0,
+            census: (*census).into(),
+            fit: fit.map_or(unfitted, ofc_color_fit::from),
+            rank: rank.map_or(ofc_rank::default(), ofc_rank::from),
+            norm_location: norm_location.map_or(ofc_location::default(), ofc_location::from),
+            inliers: (*inliers).into(),
+            ellipsoid: ellipsoid.map_or(ofc_ellipsoid::default(), ofc_ellipsoid::from),
+            tilts: tilts.map_or(ofc_tilts::default(), ofc_tilts::from),
+            slant_rad: [0.0; 3],
+            candidates: [ofc_slants::default(); OFC_MAX_CANDIDATES],
+            orientation: ofc_orientation::default(),
+        };
+        if let Some(choice) = choice {
+            result.slant_rad = choice.slants;
+            result.candidate_count = count(choice.candidates.len());
+            for (slot, candidate) in result.candidates.iter_mut().zip(&choice.candidates) {
+                *slot = (*candidate).into();
+            }
+            (result.slant_source, result.chosen) = match choice.source {
+                SlantSource::Root => (OFC_SLANTS_ROOT, count(choice.chosen)),
+                SlantSource::LeastSquares => (OFC_SLANTS_LEAST_SQUARES, -1),
+                SlantSource::TiltIntegrability => (OFC_SLANTS_TILT_INTEGRABILITY, -1),
+                SlantSource::Pentland => (OFC_SLANTS_PENTLAND, -1),
+                SlantSource::LeeRosenfeld => (OFC_SLANTS_LEE_ROSENFELD, -1),
+                SlantSource::ZhengChellappa => (OFC_SLANTS_ZHENG_CHELLAPPA, -1),
+            };
+            result.orientation = choice.orientation.into();
+        }
+        result
+    }
+}
+
+/// Sets every field to its default.
+///
+/// @param params  Output.
+/// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_solve_params_default(params: *mut ofc_solve_params) -> ofc_status {
+    of(Out::new(params).map(|out| {
+        out.write(ofc_solve_params::defaults());
+        OFC_STATUS_OK
+    }))
+}
+
+/// Bytes of workspace that ofc_solve() needs: 8 a pixel, and 16 for each of the first sample_size pixels where that is
+/// more. OFC_SOLVE_WORKSPACE_SIZE(width, height) is the same number for the default parameters, for static buffers.
+///
+/// @return The size, or 0 when an argument is invalid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_solve_workspace_size(
+    width: i32,
+    height: i32,
+    params: *const ofc_solve_params,
+) -> usize {
+    let Ok(params) = input(params).and_then(|(params, _)| params.check()) else { return 0 };
+    match pixel_count(width, height) {
+        0 => 0,
+        pixels => float_bytes(solve::workspace_len(pixels, params.lmeds.sample_size)),
+    }
+}
+
+/// From a picture to the color-orientation matrix F: regression, rejection, tilts, slants, the choice among candidates.
+///
+/// @param image      The picture; its mask, black and saturated pixels are left out.
+/// @param params     See the struct.
+/// @param workspace  ofc_solve_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter, and
+///                   nothing in it is needed after the call.
+/// @param workspace_bytes  Its size.
+/// @param inlier_mask  Output: width x height bytes, rows without gaps, 255 for an inlier and 0 elsewhere; may be NULL.
+///                   It must not be the picture's own mask.
+/// @param solution   Output.
+/// @return OFC_STATUS_OK. A positive status means that there is no F, and the solution holds what was found on the way:
+///         OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_NO_TILT,
+///         OFC_STATUS_NO_CONSISTENT_SLANTS. A negative status leaves the outputs untouched: OFC_STATUS_TOO_FEW_PIXELS,
+///         OFC_STATUS_DARK, OFC_STATUS_SATURATED, or that of an invalid argument.
+///
+/// Stack: below 24 KiB. Reference: section 3.4.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_solve(
+    image: *const ofc_image,
+    params: *const ofc_solve_params,
+    workspace: *mut c_void,
+    workspace_bytes: usize,
+    inlier_mask: *mut u8,
+    solution: *mut ofc_solution,
+) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let picture = unsafe { self::image(image) }?;
+        let (own, params_extent) = input(params)?;
+        let params = own.check()?;
+        let view = &picture.view;
+        let pixels = view.width() * view.height();
+        let need = float_bytes(solve::workspace_len(pixels, params.lmeds.sample_size));
+        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
+        let out = Out::new(solution)?;
+        let [a, b, c, d, e] = picture.extents;
+        let read = [a, b, c, d, e, params_extent];
+        let mask_extent =
+            if inlier_mask.is_null() { Extent::NOTHING } else { extent(inlier_mask.cast_const(), pixels)? };
+        disjoint(&[scratch, out.extent, mask_extent], &read)?;
+        // SAFETY: checked and disjoint.
+        let found = solve::solve(view, &params, unsafe { floats(workspace, need) }).map_err(of_fit_error)?;
+        if !inlier_mask.is_null() {
+            // SAFETY: checked and disjoint.
+            found.inliers.mark(view, unsafe { output_slice(inlier_mask, pixels) });
+        }
+        out.write(ofc_solution::from(&found));
+        Ok(of_outcome(found.outcome))
+    };
+    of(body())
+}

@@ -1,0 +1,132 @@
+//! What every call returns.
+
+use core::ffi::{CStr, c_char};
+use ofc_core::image::ImageError;
+use ofc_core::lmeds::FitError;
+use ofc_core::solve::Outcome;
+
+/// The result of a call: 0 is success; negative is an error that leaves every output as it was; positive is a sound
+/// question without a full answer, and each call says what it writes then. Numbers are never reused.
+pub type ofc_status = i32;
+
+/// Success.
+pub const OFC_STATUS_OK: i32 = 0;
+/// The colors, or the normals, span fewer than three dimensions: the picture does not determine C. The solution
+/// holds what the regression found.
+pub const OFC_STATUS_RANK_DEFICIENT: i32 = 1;
+/// C is not positive definite: the colors do not lie on an ellipsoid. The normals span fewer than three dimensions,
+/// or the surface is not uniform, or not matte, or lit differently from place to place.
+pub const OFC_STATUS_NOT_POSITIVE_DEFINITE: i32 = 2;
+/// The mean gradient of a channel is zero, or no two inliers are neighbours: there is no tilt.
+pub const OFC_STATUS_NO_TILT: i32 = 3;
+/// No slants agree with the tilts and the angles between the rows of F.
+pub const OFC_STATUS_NO_CONSISTENT_SLANTS: i32 = 4;
+/// An iteration ended before it reached its tolerance; the result is what it had reached.
+pub const OFC_STATUS_NOT_CONVERGED: i32 = 5;
+
+/// A pointer that must not be NULL is.
+pub const OFC_STATUS_NULL_POINTER: i32 = -10;
+/// A pointer is not aligned for its type, a workspace not to OFC_WORKSPACE_ALIGNMENT, or a stride of floats is not
+/// a multiple of four bytes.
+pub const OFC_STATUS_MISALIGNED: i32 = -11;
+/// An output overlaps an input, the workspace or another output.
+pub const OFC_STATUS_OVERLAP: i32 = -12;
+
+/// A width, height or count is zero or negative.
+pub const OFC_STATUS_EMPTY: i32 = -20;
+/// More than 2^31 - 1 pixels, or a size beyond the address space.
+pub const OFC_STATUS_TOO_LARGE: i32 = -21;
+/// A row stride is smaller than a row.
+pub const OFC_STATUS_STRIDE_TOO_SMALL: i32 = -22;
+/// The workspace is smaller than its size function says.
+pub const OFC_STATUS_WORKSPACE_TOO_SMALL: i32 = -23;
+
+/// A pixel format is none of OFC_PIXEL_*.
+pub const OFC_STATUS_UNKNOWN_FORMAT: i32 = -30;
+/// A parameter is out of its range, or an input number is not finite.
+pub const OFC_STATUS_INVALID_PARAMETER: i32 = -31;
+/// A reserved field is not zero: use the `_default` call, or initialise the whole struct.
+pub const OFC_STATUS_RESERVED_NOT_ZERO: i32 = -32;
+/// The solution handed in holds no F: the solve that made it did not return OFC_STATUS_OK.
+pub const OFC_STATUS_NOT_SOLVED: i32 = -33;
+
+/// Fewer usable pixels than a fit needs.
+pub const OFC_STATUS_TOO_FEW_PIXELS: i32 = -40;
+/// Too few usable pixels: most are black.
+pub const OFC_STATUS_DARK: i32 = -41;
+/// Too few usable pixels: most are saturated.
+pub const OFC_STATUS_SATURATED: i32 = -42;
+/// No two by two square of inliers to take differences on.
+pub const OFC_STATUS_NO_CELLS: i32 = -43;
+
+fn message(status: ofc_status) -> &'static CStr {
+    match status {
+        OFC_STATUS_OK => c"success",
+        OFC_STATUS_RANK_DEFICIENT => c"rank-deficient: the colors or the normals span fewer than three dimensions",
+        OFC_STATUS_NOT_POSITIVE_DEFINITE => c"C is not positive definite: the colors do not lie on an ellipsoid (normals in fewer than three dimensions, or a surface that is not uniform and matte)",
+        OFC_STATUS_NO_TILT => c"no tilt: a channel has no mean gradient over the inliers",
+        OFC_STATUS_NO_CONSISTENT_SLANTS => c"no slants are consistent with the tilts and the cosines (eqs. 25 have no root)",
+        OFC_STATUS_NOT_CONVERGED => c"not converged: the iteration ended before it reached its tolerance",
+        OFC_STATUS_NULL_POINTER => c"a pointer is NULL",
+        OFC_STATUS_MISALIGNED => c"a pointer or stride is not aligned for its type",
+        OFC_STATUS_OVERLAP => c"an output overlaps another buffer",
+        OFC_STATUS_EMPTY => c"a width, height or count is zero or negative",
+        OFC_STATUS_TOO_LARGE => c"too many pixels, or a size beyond the address space",
+        OFC_STATUS_STRIDE_TOO_SMALL => c"a row stride is smaller than a row",
+        OFC_STATUS_WORKSPACE_TOO_SMALL => c"the workspace is too small",
+        OFC_STATUS_UNKNOWN_FORMAT => c"unknown pixel format",
+        OFC_STATUS_INVALID_PARAMETER => c"a parameter is out of its range",
+        OFC_STATUS_RESERVED_NOT_ZERO => c"a reserved field is not zero",
+        OFC_STATUS_NOT_SOLVED => c"the solution holds no F",
+        OFC_STATUS_TOO_FEW_PIXELS => c"too few usable pixels",
+        OFC_STATUS_DARK => c"too few usable pixels: most are black",
+        OFC_STATUS_SATURATED => c"too few usable pixels: most are saturated",
+        OFC_STATUS_NO_CELLS => c"no cell of four neighbouring inliers",
+        _ => c"unknown status",
+    }
+}
+
+/// A sentence for a status, in static storage; never NULL, also for numbers that are no status.
+#[unsafe(no_mangle)]
+pub extern "C" fn ofc_status_message(status: ofc_status) -> *const c_char {
+    message(status).as_ptr()
+}
+
+/// The status of a view that could not be made.
+pub(crate) const fn of_image_error(error: ImageError) -> ofc_status {
+    match error {
+        ImageError::Empty => OFC_STATUS_EMPTY,
+        ImageError::StrideTooSmall => OFC_STATUS_STRIDE_TOO_SMALL,
+        ImageError::TooLarge | ImageError::TooShort => OFC_STATUS_TOO_LARGE,
+    }
+}
+
+/// The status of a fit that could not be made.
+pub(crate) const fn of_fit_error(error: FitError) -> ofc_status {
+    match error {
+        FitError::Params => OFC_STATUS_INVALID_PARAMETER,
+        FitError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
+        FitError::TooFewPixels => OFC_STATUS_TOO_FEW_PIXELS,
+        FitError::Dark => OFC_STATUS_DARK,
+        FitError::Saturated => OFC_STATUS_SATURATED,
+        FitError::RankDeficient { .. } => OFC_STATUS_RANK_DEFICIENT,
+    }
+}
+
+/// The status of a pipeline that came so far.
+pub(crate) const fn of_outcome(outcome: Outcome) -> ofc_status {
+    match outcome {
+        Outcome::Solved => OFC_STATUS_OK,
+        Outcome::RankDeficient => OFC_STATUS_RANK_DEFICIENT,
+        Outcome::NotPositiveDefinite => OFC_STATUS_NOT_POSITIVE_DEFINITE,
+        Outcome::NoTilt => OFC_STATUS_NO_TILT,
+        Outcome::NoConsistentSlants => OFC_STATUS_NO_CONSISTENT_SLANTS,
+    }
+}
+
+/// The status of a call's body.
+pub(crate) fn of(result: Result<ofc_status, ofc_status>) -> ofc_status {
+    match result {
+        Ok(status) | Err(status) => status,
+    }
+}

@@ -1,0 +1,480 @@
+//! The structs that cross the border, each with the core's twin. Conversions name every field, so a field added on one
+//! side does not compile until the other has it.
+
+use crate::pointers::Plain;
+use crate::status::{OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_RESERVED_NOT_ZERO, ofc_status};
+use ofc_core::image::{Census, Usable};
+use ofc_core::inliers::{Band, Inliers};
+use ofc_core::lmeds::{self, Fit};
+use ofc_core::location::Location;
+use ofc_core::mat3::Mat3;
+use ofc_core::orientation::Orientation;
+use ofc_core::regression::Estimate;
+use ofc_core::tilt::Tilts;
+use ofc_core::{ellipsoid::Ellipsoid, integrability::Integrability};
+
+macro_rules! plain {
+    ($($name:ident),+ $(,)?) => {
+        // SAFETY: integers and floats only.
+        $(unsafe impl Plain for $name {})+
+    };
+}
+plain!(
+    ofc_lmeds_params,
+    ofc_census,
+    ofc_estimate,
+    ofc_inliers,
+    ofc_color_fit,
+    ofc_location,
+    ofc_ellipsoid,
+    ofc_tilts,
+    ofc_slants,
+    ofc_orientation,
+    ofc_integrability,
+);
+
+/// A 3x3 matrix of C, row-major.
+pub(crate) fn flat(m: &Mat3) -> [f64; 9] {
+    let [[a, b, c], [d, e, f], [g, h, i]] = *m;
+    [a, b, c, d, e, f, g, h, i]
+}
+
+/// A 3x3 matrix from C, row-major.
+pub(crate) fn unflat([a, b, c, d, e, f, g, h, i]: [f64; 9]) -> Mat3 {
+    [[a, b, c], [d, e, f], [g, h, i]]
+}
+
+/// A 3x3 matrix from C, row-major, of finite numbers.
+pub(crate) fn finite_matrix(values: [f64; 9]) -> Result<Mat3, ofc_status> {
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(unflat(values))
+    } else {
+        Err(OFC_STATUS_INVALID_PARAMETER)
+    }
+}
+
+/// A number of pixels; pictures hold no more than 2^31 - 1.
+pub(crate) fn count(pixels: usize) -> i32 {
+    i32::try_from(pixels).unwrap_or(i32::MAX)
+}
+
+/// How C is fitted: one of OFC_FIT_*.
+pub type ofc_fit_method = i32;
+/// Least median of squares, the paper's.
+pub const OFC_FIT_LEAST_MEDIAN: i32 = 0;
+/// Least squares over every usable pixel, none rejected: Woodham, Iwahori and Barman's, for pictures without outliers.
+pub const OFC_FIT_LEAST_SQUARES: i32 = 1;
+
+/// How the regression in color space searches and what it rejects. Set by ofc_lmeds_params_default().
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ofc_lmeds_params {
+    /// Probability that at least one subset is free of outliers, in (0, 1). Default 0.9999.
+    pub confidence: f64,
+    /// Share of outliers for which that holds, in [0, 1). Default 0.5.
+    pub outlier_share: f64,
+    /// Residuals above this many robust dispersions are outliers, > 0. Default 2.5.
+    pub rejection: f64,
+    /// Confidence of the limits given with each coefficient, in (0, 1). Default 0.95.
+    pub limits_confidence: f64,
+    /// A pixel is saturated, and left out, if a channel is at or above this, > 0; 0 stands for the largest value of the
+    /// pixel type, and for no limit with floats. Default 0.
+    pub saturation: f64,
+    /// Fixes every random choice. Default 0.
+    pub seed: u64,
+    /// At least this many subsets are drawn, up to 10,000,000. Default 500.
+    pub min_subsets: u32,
+    /// Exactly this many subsets, up to 10,000,000; 0 for as many as confidence and outlier_share ask for. Default 0.
+    pub subsets: u32,
+    /// Pixels that the search looks at, at least 12; the result is judged on all. Default 10,000.
+    pub sample_size: u32,
+    /// OFC_FIT_LEAST_MEDIAN or OFC_FIT_LEAST_SQUARES. Default OFC_FIT_LEAST_MEDIAN.
+    pub method: ofc_fit_method,
+    /// Must be zero.
+    pub reserved: [u32; 4],
+}
+
+impl ofc_lmeds_params {
+    /// The defaults.
+    pub(crate) fn defaults() -> Self {
+        let lmeds::Params {
+            method,
+            confidence,
+            outlier_share,
+            min_subsets,
+            subsets,
+            sample_size,
+            seed,
+            rejection,
+            limits_confidence,
+        } = lmeds::Params::default();
+        Self {
+            confidence,
+            outlier_share,
+            rejection,
+            limits_confidence,
+            saturation: 0.0,
+            seed,
+            min_subsets,
+            subsets,
+            sample_size,
+            method: match method {
+                lmeds::Method::LeastMedian => OFC_FIT_LEAST_MEDIAN,
+                lmeds::Method::LeastSquares => OFC_FIT_LEAST_SQUARES,
+            },
+            reserved: [0; 4],
+        }
+    }
+
+    /// The core's parameters and the saturation level, if one is set.
+    pub(crate) fn check(self) -> Result<(lmeds::Params, Option<f32>), ofc_status> {
+        let Self {
+            confidence,
+            outlier_share,
+            rejection,
+            limits_confidence,
+            saturation,
+            seed,
+            min_subsets,
+            subsets,
+            sample_size,
+            method,
+            reserved,
+        } = self;
+        if reserved != [0; 4] {
+            return Err(OFC_STATUS_RESERVED_NOT_ZERO);
+        }
+        let method = match method {
+            OFC_FIT_LEAST_MEDIAN => lmeds::Method::LeastMedian,
+            OFC_FIT_LEAST_SQUARES => lmeds::Method::LeastSquares,
+            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
+        };
+        let params = lmeds::Params {
+            method,
+            confidence,
+            outlier_share,
+            min_subsets,
+            subsets,
+            sample_size,
+            seed,
+            rejection,
+            limits_confidence,
+        };
+        if params.subset_count().is_none() || saturation.is_nan() || saturation < 0.0 {
+            return Err(OFC_STATUS_INVALID_PARAMETER);
+        }
+        Ok((params, (saturation > 0.0).then_some(saturation as f32)))
+    }
+}
+
+/// What becomes of the pixels before any fit; the counts add up to width times height.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_census {
+    /// Pixels that the fit may use.
+    pub usable: i32,
+    /// Left out by the mask.
+    pub masked_out: i32,
+    /// Zero (or negative) in all channels.
+    pub dark: i32,
+    /// At or above the saturation level in a channel.
+    pub saturated: i32,
+    /// NaN or infinite in a channel.
+    pub non_finite: i32,
+    /// Largest absolute channel value of the usable pixels.
+    pub largest: f32,
+}
+
+impl From<Census> for ofc_census {
+    fn from(census: Census) -> Self {
+        let Census { usable, masked_out, non_finite, dark, saturated, largest } = census;
+        Self {
+            usable: count(usable),
+            masked_out: count(masked_out),
+            dark: count(dark),
+            saturated: count(saturated),
+            non_finite: count(non_finite),
+            largest,
+        }
+    }
+}
+
+/// A regression coefficient with what the regression knows of it.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_estimate {
+    /// The estimate.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// Value over standard error.
+    pub t: f64,
+    /// Two-sided p value of t: how likely so large a t is if the true value is 0.
+    pub p: f64,
+    /// Lower confidence limit.
+    pub low: f64,
+    /// Upper confidence limit.
+    pub high: f64,
+}
+
+impl From<Estimate> for ofc_estimate {
+    fn from(estimate: Estimate) -> Self {
+        let Estimate { value, standard_error, t, p, low, high } = estimate;
+        Self { value, standard_error, t, p, low, high }
+    }
+}
+
+impl From<ofc_estimate> for Estimate {
+    fn from(estimate: ofc_estimate) -> Self {
+        let ofc_estimate { value, standard_error, t, p, low, high } = estimate;
+        Self { value, standard_error, t, p, low, high }
+    }
+}
+
+/// The pixels that obey the model, as a test of a pixel's color rho alone: finite, not black, below the saturation
+/// level, and rho^T C rho within both bands. It can be applied to another frame under the same lights.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_inliers {
+    /// Channels at or above this are saturated.
+    pub saturation: f64,
+    /// C of the first rejection, by residual: c11, c22, c33, c12, c13, c23.
+    pub residual_form: [f64; 6],
+    /// Smallest accepted rho^T C rho.
+    pub residual_low: f64,
+    /// Largest accepted rho^T C rho.
+    pub residual_high: f64,
+    /// C of the second rejection, by the length of the normal.
+    pub norm_form: [f64; 6],
+    /// Smallest accepted rho^T C rho.
+    pub norm_low: f64,
+    /// Largest accepted rho^T C rho.
+    pub norm_high: f64,
+}
+
+impl From<Inliers> for ofc_inliers {
+    fn from(inliers: Inliers) -> Self {
+        let Inliers { usable: Usable { saturation }, residual, norm } = inliers;
+        Self {
+            saturation: f64::from(saturation),
+            residual_form: residual.form,
+            residual_low: residual.low,
+            residual_high: residual.high,
+            norm_form: norm.form,
+            norm_low: norm.low,
+            norm_high: norm.high,
+        }
+    }
+}
+
+impl ofc_inliers {
+    /// The core's twin. Any numbers are a valid test: comparisons with NaN hold for no pixel.
+    pub(crate) fn into_core(self) -> Inliers {
+        let Self { saturation, residual_form, residual_low, residual_high, norm_form, norm_low, norm_high } =
+            self;
+        Inliers {
+            usable: Usable { saturation: saturation as f32 },
+            residual: Band { form: residual_form, low: residual_low, high: residual_high },
+            norm: Band { form: norm_form, low: norm_low, high: norm_high },
+        }
+    }
+}
+
+/// The color-space quadratic form rho^T C rho = 1 (eqs. 9-12). Coefficients are in the order c11, c22, c33, c12, c13,
+/// c23 and in (pixel value)^-2.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_color_fit {
+    /// The C that minimises the median squared residual.
+    pub robust: [f64; 6],
+    /// Square root of that median, over all usable pixels.
+    pub median_residual: f64,
+    /// Robust dispersion s0 of eq. 12.
+    pub dispersion: f64,
+    /// Robust coefficient of determination, 1 - median_residual^2.
+    pub r_squared: f64,
+    /// The reweighted fit: least squares over the inliers.
+    pub coefficients: [ofc_estimate; 6],
+    /// Standard deviation of the inliers' residuals under the reweighted fit.
+    pub residual_deviation: f64,
+    /// Root mean square of the inliers' colors along their principal axes, descending, in pixel values.
+    pub color_deviations: [f64; 3],
+    /// Noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values.
+    pub noise_deviation: f64,
+    /// Noise in each channel with which colors that do not determine C could look like these. solve refuses where it
+    /// is below 1.5 times noise_deviation; C is biased by about the inverse square of that ratio.
+    pub degenerate_noise_deviation: f64,
+    /// Pixels within residual_form's band.
+    pub inlier_count: i32,
+    /// Subsets drawn.
+    pub subsets: u32,
+}
+
+impl From<Fit> for ofc_color_fit {
+    fn from(fit: Fit) -> Self {
+        let Fit {
+            robust,
+            median_residual,
+            dispersion,
+            r_squared,
+            band: _,
+            coefficients,
+            residual_deviation,
+            color_deviations,
+            noise_deviation,
+            degenerate_noise_deviation,
+            usable: _,
+            inliers,
+            subsets,
+        } = fit;
+        Self {
+            robust,
+            median_residual,
+            dispersion,
+            r_squared,
+            coefficients: coefficients.map(ofc_estimate::from),
+            residual_deviation,
+            color_deviations,
+            noise_deviation,
+            degenerate_noise_deviation,
+            inlier_count: count(inliers),
+            subsets,
+        }
+    }
+}
+
+/// Where most of a set of numbers lies: the one-dimensional least median of squares.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_location {
+    /// Midpoint of the shortest interval that holds half of the numbers.
+    pub location: f64,
+    /// Half the length of that interval: the median distance from location.
+    pub median_distance: f64,
+    /// Robust dispersion: 1.4826 (1 + 5 / (n - 1)) median_distance.
+    pub dispersion: f64,
+}
+
+impl From<Location> for ofc_location {
+    fn from(value: Location) -> Self {
+        let Location { location, median_distance, dispersion } = value;
+        Self { location, median_distance, dispersion }
+    }
+}
+
+/// What C says of the color-orientation matrix F before its orthogonal transformation is known (eq. 18). Matrices are
+/// row-major.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_ellipsoid {
+    /// C, in (pixel value)^-2.
+    pub c: [f64; 9],
+    /// Eigenvalues of C, descending: the squared inverse semi-axes of the ellipsoid.
+    pub eigenvalues: [f64; 3],
+    /// The root G0 = sqrt(Lambda) U^T of C = G0^T G0; G0 rho is the normal up to an orthogonal transformation.
+    pub root: [f64; 9],
+    /// F F^T = C^-1, in (pixel value)^2.
+    pub f_f_transposed: [f64; 9],
+    /// Lengths of the rows f1, f2, f3 of F, in pixel values.
+    pub norms: [f64; 3],
+    /// Cosines (h12, h13, h23) of the angles between the rows of F.
+    pub cosines: [f64; 3],
+}
+
+impl From<Ellipsoid> for ofc_ellipsoid {
+    fn from(ellipsoid: Ellipsoid) -> Self {
+        let Ellipsoid { c, eigenvalues, root, f_f_transposed, norms, cosines } = ellipsoid;
+        Self {
+            c: flat(&c),
+            eigenvalues,
+            root: flat(&root),
+            f_f_transposed: flat(&f_f_transposed),
+            norms,
+            cosines,
+        }
+    }
+}
+
+/// Tilts of the three channels' equivalent lights.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_tilts {
+    /// Counter-clockwise from x in (-pi, pi], for a convex surface.
+    pub tilt_rad: [f64; 3],
+    /// Mean gradient (Ix, Iy) of each channel over the inliers, pixel values a pixel, y up: r, g, b; zero where the
+    /// estimator has none.
+    pub mean_gradient: [f64; 6],
+}
+
+impl From<Tilts> for ofc_tilts {
+    fn from(value: Tilts) -> Self {
+        let Tilts { tilts, gradients: [[rx, ry], [gx, gy], [bx, by]] } = value;
+        Self { tilt_rad: tilts, mean_gradient: [rx, ry, gx, gy, bx, by] }
+    }
+}
+
+/// Slants of the three channels' equivalent lights that are consistent with their tilts and angles.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_slants {
+    /// From +z, in [0, pi/2].
+    pub slant_rad: [f64; 3],
+    /// Largest residual of eqs. 24.
+    pub residual: f64,
+    /// Mean of the integral (15) over cells of inliers, per pixel^2; infinite where F is rank-deficient, 0 where no
+    /// picture is involved.
+    pub integral: f64,
+    /// The branch of eqs. 25, 1 to 8: the signs of their square roots, 1 for (+,+,+) and 8 for (-,-,-); 0 for least
+    /// squares.
+    pub branch: i32,
+    /// Zero.
+    pub reserved: u32,
+}
+
+/// The color-orientation matrix F, rho = F n, row-major.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_orientation {
+    /// Row i is f_i: strength and direction of the one light that channel i could have been lit by, in pixel values.
+    pub f: [f64; 9],
+    /// The inverse, n = f_inverse rho, over the singular values above the threshold.
+    pub f_inverse: [f64; 9],
+    /// Singular values of F, descending.
+    pub singular_values: [f64; 3],
+    /// How many of them are above the threshold: 3 where F can be inverted.
+    pub rank: i32,
+    /// Zero.
+    pub reserved: u32,
+}
+
+impl From<Orientation> for ofc_orientation {
+    fn from(orientation: Orientation) -> Self {
+        let Orientation { f, f_inverse, singular_values, rank } = orientation;
+        Self {
+            f: flat(&f),
+            f_inverse: flat(&f_inverse),
+            singular_values,
+            rank: rank.cast_signed(),
+            reserved: 0,
+        }
+    }
+}
+
+/// The integral (15) of normals, as a mean over cells of four inliers.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_integrability {
+    /// Mean of (dp/dy - dq/dx)^2, per pixel^2.
+    pub mean: f64,
+    /// How many cells.
+    pub cells: i32,
+    /// Zero.
+    pub reserved: u32,
+}
+
+impl From<Integrability> for ofc_integrability {
+    fn from(value: Integrability) -> Self {
+        let Integrability { mean, cells } = value;
+        Self { mean, cells: count(cells), reserved: 0 }
+    }
+}

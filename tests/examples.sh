@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# Runs the examples as a user would, and looks at what they say and write.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+
+fail() {
+    echo "examples: $*" >&2
+    exit 1
+}
+
+# expect STATUS COMMAND...: runs it, and keeps what it says in $out/said.
+expect() {
+    local expected=$1 status=0
+    shift
+    "$@" >"$out/said" 2>&1 || status=$?
+    [ "$status" -eq "$expected" ] || { cat "$out/said" >&2; fail "$* ended with $status, not $expected"; }
+}
+
+# says TEXT: the last command said so.
+says() {
+    grep -qF -- "$1" "$out/said" || { cat "$out/said" >&2; fail "nothing was said of '$1'"; }
+}
+
+# json FILE EXPRESSION: a Python expression over the report r holds.
+json() {
+    python3 -c 'import json, sys; r = json.load(open(sys.argv[1])); sys.exit(not eval(sys.argv[2]))' "$1" "$2" ||
+        fail "$1: not $2"
+}
+
+expect 0 ./c_examples/run.sh --out "$out/scene"
+says "median error"
+for file in normals.png normals.tiff inliers.png report.json overview.png; do
+    [ -s "$out/scene/$file" ] || fail "no $file"
+done
+json "$out/scene/report.json" 'r["status"] == "success" and r["median_error_deg"] < 10'
+json "$out/scene/report.json" 'all(k in r for k in "coefficients C r_squared dispersion inliers norm_location norms cosines tilt_deg slant_deg candidates F ms version".split())'
+json "$out/scene/report.json" 'all(k in c for c in r["coefficients"] for k in ("value", "standard_error", "t", "p"))'
+
+photo=target/c_examples/ofc_photo
+expect 0 "$photo" --help
+says "--planes"
+expect 2 "$photo" --no-such-option
+expect 2 "$photo" "$out/no-such-file.png"
+says "cannot read"
+expect 2 "$photo" "$out/scene/inliers.png" --out "$out/gray"
+says "grayscale"
+expect 2 "$photo" --mask "$out/scene/inliers.png"
+expect 2 "$photo" --planes "$out/scene/inliers.png"
+expect 2 "$photo" "$out/scene/overview.png" --mask "$out/scene/inliers.png"
+says "the mask is"
+expect 2 "$photo" "$out/scene/normals.png" --out /dev/null/x
+expect 2 "$photo" --seed many
+# A normal map is no picture of a matte surface: refused or not, but with an answer and its own results.
+expect 0 "$photo" "$out/scene/normals.png" --truth "$out/scene/normals.tiff" --subsets 600 --seed 7 --out "$out/again"
+json "$out/again/report.json" 'r["parameters"] == {"seed": 7, "subsets": 600} and "median_error_deg" in r'
+
+# The TIFF holds plain floats and reads back as what was written.
+python3 tests/plain_tiff.py "$out/again/normals.tiff" || fail "normals.tiff is compressed"
+expect 0 "$photo" "$out/scene/normals.png" --truth "$out/again/normals.tiff" --subsets 600 --seed 7 --out "$out/third"
+json "$out/third/report.json" 'r["median_error_deg"] < 0.001'
+
+expect 0 target/c_examples/minimal
+says "mean error"
+
+data=${OFC_DATA:-../shared/data}
+if [ -d "$data" ]; then
+    expect 0 "$photo" "$data/cat_figurine/rgb.png" --mask "$data/cat_figurine/mask.png" --out "$out/cat"
+    json "$out/cat/report.json" 'r["inliers"]["after_norms"] > 80000'
+    expect 1 "$photo" "$data/gelsight_groove_rank2/rgb.png" --mask "$data/gelsight_groove_rank2/mask.png" --out "$out/groove"
+    says "dimensions"
+    [ -s "$out/groove/report.json" ] || fail "a refusal without a report"
+else
+    echo "skipped: no photographs beside the project (set OFC_DATA to their folder)"
+fi
+echo "examples: all as expected"

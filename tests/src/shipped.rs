@@ -1,0 +1,46 @@
+//! The library as it is shipped: built once for all tests that look at it from outside.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+/// The project's root.
+#[must_use]
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the tests lie in the project")
+}
+
+/// The folder of `libofc.so` and `libofc.a`, built without the standard library.
+///
+/// # Panics
+/// When they cannot be built.
+pub fn folder() -> &'static Path {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let arguments = "build --quiet --release -p ofc-ffi --no-default-features --features panic-handler \
+                         --target-dir target/ship";
+        let status = Command::new(cargo).args(arguments.split_whitespace()).current_dir(root()).status();
+        assert!(status.expect("cargo runs").success(), "cargo {arguments}");
+        root().join("target/ship/release")
+    })
+}
+
+/// Runs a program and returns what it wrote, whatever its exit status.
+///
+/// # Panics
+/// When it cannot be started.
+pub fn run(program: &str, arguments: &[&str]) -> Output {
+    Command::new(program).args(arguments).output().unwrap_or_else(|error| panic!("{program}: {error}"))
+}
+
+/// What a program that must succeed wrote to its standard output.
+///
+/// # Panics
+/// When it fails.
+#[must_use]
+pub fn stdout(program: &str, arguments: &[&str]) -> String {
+    let output = run(program, arguments);
+    assert!(output.status.success(), "{program} {arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("text")
+}
