@@ -980,6 +980,16 @@ ofc_status ofc_depth_integrate(const struct ofc_depth_input *input,
                                size_t depth_stride_bytes,
                                struct ofc_depth_result *result);
 
+// Unit normals of a depth map: of central differences of its depths, one-sided at the borders of picture, mask and surface.
+//
+// @param depth    The surface; there is none where the depth is not finite.
+// @param normals  Output: height rows of width times (x, y, z) floats, zero where there is no surface.
+// @param normals_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
+// @return OFC_STATUS_OK or the status of an invalid argument.
+ofc_status ofc_depth_normals(const struct ofc_depth_map *depth,
+                             float *normals,
+                             size_t normals_stride_bytes);
+
 // Pentland's tilts of the three channels' equivalent lights, from mean differences between neighbouring inliers along
 // the axes and diagonals; for a closed convex surface.
 //

@@ -3,6 +3,7 @@
 use crate::image::dimension;
 use crate::pointers::{Extent, Out, Plain, disjoint, extent, input, input_slice, output_slice, workspace};
 use crate::regression::{float_bytes, floats};
+use crate::render::{ofc_depth_map, surface};
 use crate::status::{
     OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_NOT_CONVERGED, OFC_STATUS_NULL_POINTER,
     OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO, OFC_STATUS_STRIDE_TOO_SMALL, OFC_STATUS_TOO_FEW_PIXELS,
@@ -273,6 +274,35 @@ pub unsafe extern "C" fn ofc_depth_integrate(
             reserved: 0,
         });
         Ok(if converged { OFC_STATUS_OK } else { OFC_STATUS_NOT_CONVERGED })
+    };
+    of(body())
+}
+
+/// Unit normals of a depth map: of central differences of its depths, one-sided at the borders of picture, mask and surface.
+///
+/// @param depth    The surface; there is none where the depth is not finite.
+/// @param normals  Output: height rows of width times (x, y, z) floats, zero where there is no surface.
+/// @param normals_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
+/// @return OFC_STATUS_OK or the status of an invalid argument.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_depth_normals(
+    depth: *const ofc_depth_map,
+    normals: *mut f32,
+    normals_stride_bytes: usize,
+) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let (surface, [own, depths, mask]) = unsafe { surface(depth) }?;
+        if !normals_stride_bytes.is_multiple_of(size_of::<f32>()) {
+            return Err(OFC_STATUS_MISALIGNED);
+        }
+        let stride = normals_stride_bytes / size_of::<f32>();
+        let need = span(surface.width(), surface.height(), 3, stride).map_err(of_image_error)?;
+        let written = extent(normals.cast_const(), need)?;
+        disjoint(&[written], &[own, depths, mask])?;
+        // SAFETY: checked and disjoint.
+        surface.write_normals(unsafe { output_slice(normals, need) }, stride).map_err(of_image_error)?;
+        Ok(OFC_STATUS_OK)
     };
     of(body())
 }

@@ -7,6 +7,7 @@ static struct {
     float depth[HEIGHT * PADDED + 8];
     ofc_depth_result result;
     ofc_depth_params params;
+    float normals[HEIGHT * (WIDTH * 3 + 2) + 8];
 } out;
 
 static float normals[HEIGHT][WIDTH][3], p[HEIGHT][WIDTH], q[HEIGHT][WIDTH], ones[HEIGHT][WIDTH], prior[HEIGHT][WIDTH];
@@ -248,11 +249,55 @@ static void small(void **state)
         }
 }
 
+static void normals_of_depth(void **state)
+{
+    (void)state;
+    enum { STRIDE = (WIDTH * 3 + 2) * 4 };
+    static float depth[HEIGHT][WIDTH];
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            depth[y][x] = (float)truth(x, y);
+    depth[5][6] = NAN;
+    const ofc_depth_map map = {
+        .depth = &depth[0][0], .width = WIDTH, .height = HEIGHT, .row_stride_bytes = sizeof depth[0], .pixel_pitch = 1};
+#define NORMALS(map, normals, stride) ofc_depth_normals(map, normals, stride)
+    REFUSED(OFC_STATUS_NULL_POINTER, out, NORMALS(NULL, out.normals, STRIDE));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, NORMALS(&map, NULL, STRIDE));
+    REFUSED(OFC_STATUS_MISALIGNED, out, NORMALS(MISALIGNED(&map), out.normals, STRIDE));
+    REFUSED(OFC_STATUS_MISALIGNED, out, NORMALS(&map, MISALIGNED(out.normals), STRIDE));
+    REFUSED(OFC_STATUS_MISALIGNED, out, NORMALS(&map, out.normals, STRIDE + 1));
+    REFUSED(OFC_STATUS_STRIDE_TOO_SMALL, out, NORMALS(&map, out.normals, WIDTH * 12 - 4));
+    REFUSED(OFC_STATUS_TOO_LARGE, out, NORMALS(&map, out.normals, SIZE_MAX - 3));
+    REFUSED(OFC_STATUS_OVERLAP, out, NORMALS(&map, &depth[0][0], STRIDE));
+    ofc_depth_map bad = map;
+    bad.width = 0;
+    REFUSED(OFC_STATUS_EMPTY, out, NORMALS(&bad, out.normals, STRIDE));
+    bad = map;
+    bad.pixel_pitch = -1;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, NORMALS(&bad, out.normals, STRIDE));
+    memset(&out, PATTERN, sizeof out);
+    assert_int_equal(NORMALS(&map, out.normals, STRIDE), OFC_STATUS_OK);
+    assert_true(is_untouched(out.depth, sizeof out.depth));
+    for (int y = 0; y < HEIGHT; y++) {
+        for (int x = 1; x + 1 < WIDTH; x++) {
+            const float *n = &out.normals[y * (STRIDE / 4) + 3 * x];
+            if (y == 5 && x == 6)
+                assert_true(n[0] == 0 && n[1] == 0 && n[2] == 0);
+            else if (y < 3 || y > 7 || x < 4 || x > 8) { /* away from the hole, where differences are one-sided */
+                assert_true(fabs(-n[0] / n[2] - x / 100.0) < 1e-4 && fabs(-n[1] / n[2] - 0.5) < 1e-4);
+                assert_true(fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-6);
+            }
+        }
+        assert_true(is_untouched(&out.normals[y * (STRIDE / 4) + WIDTH * 3], STRIDE - WIDTH * 12));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sizes),      cmocka_unit_test(pointers), cmocka_unit_test(inputs),
         cmocka_unit_test(parameters), cmocka_unit_test(depth),    cmocka_unit_test(small),
+        cmocka_unit_test(normals_of_depth),
     };
     return cmocka_run_group_tests(tests, prepare, NULL);
 }

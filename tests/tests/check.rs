@@ -198,7 +198,7 @@ fn bad_input_is_refused() {
         let inliers = |window: &ofc_core::image::Window| if any { solution.inliers.bits(window) } else { 0 };
         check(&image, inliers, orientation, &coefficients, None, &mut vec![0.0; len]).map(|_| ())
     };
-    let bytes = [0; 4 * 160 * 161];
+    let bytes = vec![0; 4 * 160 * 161];
     let other = DepthMap::new(&bytes, 160, 161, 4 * 160, 1.0).unwrap();
     assert_eq!(
         check(&image, |_| 1, &orientation, &coefficients, Some(&other), &mut vec![0.0; need]),

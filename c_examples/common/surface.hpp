@@ -1,0 +1,44 @@
+// Depth from normals, and files of it.
+#pragma once
+
+#include <ofc.h>
+#include <opencv2/core.hpp>
+#include <string>
+
+struct Surface {
+    ofc_status status = OFC_STATUS_OK;
+    ofc_depth_params params = {};
+    ofc_depth_result result = {}; // zero where the status is negative
+    cv::Mat depth;                // CV_32F in the unit of the pixel pitch, grows toward the camera; NaN where there is none
+    double milliseconds = 0;
+
+    bool integrated() const { return status == OFC_STATUS_OK || status == OFC_STATUS_NOT_CONVERGED; }
+    // The view of it that ofc_check() takes; valid for as long as this is.
+    ofc_depth_map view() const;
+    // Least and largest depth.
+    cv::Vec2d range() const;
+};
+
+// What the user wants of the integration.
+struct DepthOptions {
+    std::string method = "poisson"; // poisson, paper or coupled
+    double pixel_pitch = 0;         // 0 where not given: depth is in pixels
+
+    // "mm", or "pixels".
+    const char *unit() const { return pixel_pitch > 0 ? "mm" : "pixels"; }
+    ofc_depth_params params() const;
+};
+
+// Integrates normals (CV_32FC3 x, y, z, zero where there is none) over the mask (CV_8U, or empty for all of them).
+// Known depths (CV_32F, NaN where unknown) may be empty.
+Surface integrate(const cv::Mat &normals, const cv::Mat &mask, const ofc_depth_params &params,
+                  const cv::Mat &known = cv::Mat());
+
+void write_depth_tiff(const std::string &path, const cv::Mat &depth);
+
+// Binary PLY: a vertex a pixel with depth, x right, y up, z toward the camera from the middle of the picture, in the unit
+// of depth; normals of the surface, and the colors of a BGR picture of the same size.
+void write_mesh(const std::string &path, const Surface &surface, const cv::Mat &bgr);
+
+// Unit normals of the depth map itself, zero where it has no depth. CV_32FC3.
+cv::Mat normals_of(const Surface &surface);
