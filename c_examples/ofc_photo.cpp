@@ -2,7 +2,7 @@
 //
 // Shows how cv::Mat goes in and out of ofc, the whole solve and each of its stages, and what to do with a status.
 
-#include "common/picture.hpp"
+#include "common/surface_view.hpp"
 #include "photo/options.hpp"
 #include "photo/overview.hpp"
 #include "photo/report.hpp"
@@ -10,7 +10,7 @@
 
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
+#include <opencv2/imgproc.hpp>
 
 namespace {
 
@@ -72,6 +72,18 @@ Result solve(const Picture &picture, const ofc_solve_params &params)
     return result;
 }
 
+// Where depth is wanted: everything that the outlines of the inliers enclose, so that gaps can be spanned.
+cv::Mat spanned(const cv::Mat &inliers, const cv::Mat &mask)
+{
+    std::vector<std::vector<cv::Point>> outlines;
+    cv::findContours(inliers, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    cv::Mat region = cv::Mat::zeros(inliers.size(), CV_8U);
+    cv::drawContours(region, outlines, -1, cv::Scalar(255), cv::FILLED);
+    if (!mask.empty())
+        region.setTo(0, mask == 0);
+    return region;
+}
+
 int run(const Options &options)
 {
     Picture picture;
@@ -92,10 +104,7 @@ int run(const Options &options)
     if (!options.truth.empty())
         truth = read_normals_tiff(options.truth, picture.size());
     const std::filesystem::path out = options.out;
-    std::error_code failure;
-    std::filesystem::create_directories(out, failure);
-    if (failure)
-        throw UsageError("cannot make the folder " + out.string() + ": " + failure.message());
+    make_folder(out);
 
     ofc_solve_params params;
     ofc_solve_params_default(&params);
@@ -103,6 +112,9 @@ int run(const Options &options)
     params.lmeds.subsets = options.subsets.value_or(params.lmeds.subsets);
     Result result = solve(picture, params);
     result.true_f = true_f;
+    result.depth = options.depth;
+    if (result.solved())
+        result.surface = integrate(result.normals, spanned(result.inliers, picture.mask), options.depth.params());
     if (result.solved() && !truth.empty())
         result.median_error_deg = median_angle_deg(result.normals, truth);
 
@@ -112,10 +124,13 @@ int run(const Options &options)
     if (result.solved()) {
         write_image(out / "normals.png", normal_map(result.normals));
         write_normals_tiff(out / "normals.tiff", result.normals);
+        write_tiff(out / "depth.tiff", result.surface.depth);
+        write_image(out / "depth.png", depth_picture(result.surface, options.depth.unit()));
+        write_mesh(out / "mesh.ply", result.surface, picture.display());
     } else {
         // What an earlier run left there is not this picture's.
-        std::filesystem::remove(out / "normals.png", failure);
-        std::filesystem::remove(out / "normals.tiff", failure);
+        for (const char *name : {"normals.png", "normals.tiff", "depth.tiff", "depth.png", "mesh.ply"})
+            std::filesystem::remove(out / name);
     }
 
     for (const Line &line : summary(result))
@@ -129,13 +144,5 @@ int run(const Options &options)
 int main(int argc, char **argv)
 {
     const Options options = parse_options(argc, argv);
-    try {
-        return run(options);
-    } catch (const UsageError &error) {
-        std::fprintf(stderr, "ofc_photo: %s\n", error.what());
-        return 2;
-    } catch (const std::exception &error) {
-        std::fprintf(stderr, "ofc_photo: %s\n", error.what());
-        return 1;
-    }
+    return guarded("ofc_photo", [&] { return run(options); });
 }

@@ -31,12 +31,17 @@ json() {
 
 expect 0 ./c_examples/run.sh --out "$out/scene"
 says "median error"
-for file in normals.png normals.tiff inliers.png report.json overview.png; do
+for file in normals.png normals.tiff inliers.png report.json overview.png depth.tiff depth.png mesh.ply; do
     [ -s "$out/scene/$file" ] || fail "no $file"
 done
 json "$out/scene/report.json" 'r["status"] == "success" and r["median_error_deg"] < 10'
 json "$out/scene/report.json" 'all(k in r for k in "coefficients C r_squared dispersion inliers norm_location norms cosines tilt_deg slant_deg candidates F ms version".split())'
 json "$out/scene/report.json" 'all(k in c for c in r["coefficients"] for k in ("value", "standard_error", "t", "p"))'
+
+# The mesh opens in other programs, with the size that the report says.
+assimp info "$out/scene/mesh.ply" >"$out/mesh" || fail "assimp cannot read mesh.ply"
+json "$out/scene/report.json" 'r["depth"]["converged"] and r["depth"]["residual"] <= 1e-4'
+json "$out/scene/report.json" "r['depth']['range'][0] < -30 and abs(r['depth']['range'][0] - $(sed -n 's/Minimum point .* \(.*\))/\1/p' "$out/mesh")) < 1e-3"
 
 photo=target/c_examples/ofc_photo
 expect 0 "$photo" --help
@@ -52,6 +57,8 @@ expect 2 "$photo" "$out/scene/overview.png" --mask "$out/scene/inliers.png"
 says "the mask is"
 expect 2 "$photo" "$out/scene/normals.png" --out /dev/null/x
 expect 2 "$photo" --seed many
+expect 2 "$photo" --integrate frankot
+expect 2 "$photo" --pixel-pitch 0
 # A normal map is no picture of a matte surface: refused or not, but with an answer and its own results.
 expect 0 "$photo" "$out/scene/normals.png" --truth "$out/scene/normals.tiff" --subsets 600 --seed 7 --out "$out/again"
 json "$out/again/report.json" 'r["parameters"] == {"seed": 7, "subsets": 600} and "median_error_deg" in r'
@@ -60,6 +67,30 @@ json "$out/again/report.json" 'r["parameters"] == {"seed": 7, "subsets": 600} an
 python3 tests/plain_tiff.py "$out/again/normals.tiff" || fail "normals.tiff is compressed"
 expect 0 "$photo" "$out/scene/normals.png" --truth "$out/again/normals.tiff" --subsets 600 --seed 7 --out "$out/third"
 json "$out/third/report.json" 'r["median_error_deg"] < 0.001'
+
+# Integration alone gives what ofc_photo gave, in millimetres, from floats; and nearly so from eight bits.
+integrate=target/c_examples/ofc_integrate
+expect 0 "$integrate" "$out/scene/normals.tiff" --pixel-pitch 0.5 --out "$out/depth"
+says "median angle"
+for file in depth.tiff depth.png mesh.png mesh.ply report.json; do
+    [ -s "$out/depth/$file" ] || fail "no $file"
+done
+range='(r["range"][1] - r["range"][0])'
+span=$(python3 -c 'import json, sys; r = json.load(open(sys.argv[1]))["depth"]["range"]; print(r[1] - r[0])' "$out/scene/report.json")
+json "$out/depth/report.json" "r['unit'] == 'mm' and abs($range / $span - 0.5) < 1e-3"
+expect 0 "$integrate" "$out/scene/normals.png" --mask "$out/scene/inliers.png" --out "$out/depth8"
+json "$out/depth8/report.json" "abs($range / $span - 1) < 0.05 and r['median_angle_deg'] < 3"
+expect 0 "$integrate" "$out/scene/normals.png" --integrate coupled --known "$out/scene/depth.tiff" --tolerance 1e-3 --out "$out/depth8"
+json "$out/depth8/report.json" 'r["method"] == "coupled"'
+expect 0 "$integrate" "$out/scene/normals.png" --y-down --integrate paper --out "$out/depth8"
+json "$out/depth8/report.json" 'r["method"] == "paper"'
+expect 2 "$integrate"
+expect 2 "$integrate" "$out/no-such-file.tiff"
+expect 2 "$integrate" "$out/scene/inliers.png" --out "$out/depth8"
+says "neither"
+expect 2 "$integrate" "$out/scene/normals.png" --mask "$out/scene/overview.png"
+expect 2 "$integrate" "$out/scene/normals.png" --known "$out/scene/normals.png"
+expect 2 "$integrate" "$out/scene/normals.png" --integrate fast
 
 expect 0 target/c_examples/minimal
 says "mean error"
@@ -71,6 +102,7 @@ if [ -d "$data" ]; then
     expect 1 "$photo" "$data/gelsight_groove_rank2/rgb.png" --mask "$data/gelsight_groove_rank2/mask.png" --out "$out/groove"
     says "dimensions"
     [ -s "$out/groove/report.json" ] || fail "a refusal without a report"
+    [ ! -e "$out/groove/depth.tiff" ] || fail "a refusal with depth"
 else
     echo "skipped: no photographs beside the project (set OFC_DATA to their folder)"
 fi

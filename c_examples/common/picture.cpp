@@ -1,5 +1,7 @@
 #include "common/picture.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -45,6 +47,14 @@ ofc_pixel_format format_of(const cv::Mat &pixels, bool planes)
     default:
         return 0;
     }
+}
+
+// imread takes a file's channels 0, 1, 2 for r, g, b and swaps them.
+cv::Mat first_and_third_swapped(const cv::Mat &image)
+{
+    cv::Mat swapped;
+    cv::cvtColor(image, swapped, cv::COLOR_BGR2RGB);
+    return swapped;
 }
 
 } // namespace
@@ -121,24 +131,56 @@ cv::Mat read_mask(const std::string &path, cv::Size size)
 
 cv::Mat read_normals_tiff(const std::string &path, cv::Size size)
 {
-    cv::Mat zyx = read(path, cv::IMREAD_UNCHANGED);
+    const cv::Mat zyx = read(path, cv::IMREAD_UNCHANGED);
     if (zyx.type() != CV_32FC3)
         throw UsageError(path + " is not a TIFF of 3 x 32-bit floats");
     if (zyx.size() != size)
         throw UsageError("the true normals are " + size_text(zyx.size()) + ", the picture " + size_text(size));
-    cv::Mat xyz;
-    cv::cvtColor(zyx, xyz, cv::COLOR_BGR2RGB); // imread takes the file's channels 0, 1, 2 for r, g, b and swaps them
-    return xyz;
+    return first_and_third_swapped(zyx);
+}
+
+cv::Mat read_normal_map(const std::string &path)
+{
+    const cv::Mat colors = read(path, cv::IMREAD_UNCHANGED);
+    if (colors.type() == CV_32FC3)
+        return first_and_third_swapped(colors);
+    if (colors.type() != CV_8UC3 && colors.type() != CV_16UC3)
+        throw UsageError(path + " is neither a TIFF of 3 x 32-bit floats nor a color picture of 8 or 16 bits a channel");
+    cv::Mat normals;
+    colors.convertTo(normals, CV_32F, 2.0 / (colors.depth() == CV_8U ? 255 : 65535), -1);
+    for (auto n = normals.begin<cv::Vec3f>(); n != normals.end<cv::Vec3f>(); ++n)
+        if (*n == cv::Vec3f(-1, -1, -1)) // black
+            *n = cv::Vec3f();
+    return first_and_third_swapped(normals);
+}
+
+std::optional<double> median_angle_deg(const cv::Mat &normals, const cv::Mat &truth)
+{
+    std::vector<double> angles;
+    for (int y = 0; y < normals.rows; y++)
+        for (int x = 0; x < normals.cols; x++) {
+            const cv::Vec3d n = normals.at<cv::Vec3f>(y, x), t = truth.at<cv::Vec3f>(y, x);
+            if (cv::norm(n) > 0 && cv::norm(t) > 0)
+                angles.push_back(degrees(std::acos(std::clamp(n.dot(t) / (cv::norm(n) * cv::norm(t)), -1.0, 1.0))));
+        }
+    if (angles.empty())
+        return std::nullopt;
+    const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
+    std::nth_element(angles.begin(), middle, angles.end());
+    return *middle;
 }
 
 void write_normals_tiff(const std::string &path, const cv::Mat &normals)
 {
-    cv::Mat zyx;
-    cv::cvtColor(normals, zyx, cv::COLOR_RGB2BGR); // imwrite swaps back: the file's samples are x, y, z
+    write_tiff(path, first_and_third_swapped(normals)); // imwrite swaps back: the file's samples are x, y, z
+}
+
+void write_tiff(const std::string &path, const cv::Mat &floats)
+{
     // OpenCV's own choice for three floats is LogLuv, which is lossy, cannot hold a negative number, and which few
     // programs read.
     constexpr int no_compression = 1;
-    write_image(path, zyx, {cv::IMWRITE_TIFF_COMPRESSION, no_compression});
+    write_image(path, floats, {cv::IMWRITE_TIFF_COMPRESSION, no_compression});
 }
 
 cv::Mat normal_map(const cv::Mat &normals)

@@ -1,16 +1,18 @@
 // Pictures between files, cv::Mat and ofc.
 #pragma once
 
+#include "common/program.hpp"
+
 #include <ofc.h>
 #include <opencv2/core.hpp>
-#include <stdexcept>
+#include <optional>
 #include <string>
 #include <vector>
 
-// What the user gave does not fit: the program says so and exits with status 2.
-struct UsageError : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
+constexpr double degrees(double radians)
+{
+    return radians * 180 / CV_PI;
+}
 
 // A picture as ofc sees it: one Mat of BGR(A) pixels, or three grayscale planes.
 struct Picture {
@@ -36,6 +38,15 @@ cv::Mat read_mask(const std::string &path, cv::Size size);
 // Normals are CV_32FC3 in the order x, y, z, zero where there is none. In the TIFF the samples are x, y, z too.
 cv::Mat read_normals_tiff(const std::string &path, cv::Size size);
 void write_normals_tiff(const std::string &path, const cv::Mat &normals);
+
+// Floats as they are, uncompressed.
+void write_tiff(const std::string &path, const cv::Mat &floats);
+
+// Reads such a TIFF of any size, or a picture of 8 or 16 bits with (n + 1) / 2 in r, g, b, black where there is none.
+cv::Mat read_normal_map(const std::string &path);
+
+// Median angle over the pixels where both have a normal; nothing where there is no such pixel.
+std::optional<double> median_angle_deg(const cv::Mat &normals, const cv::Mat &truth);
 
 // The usual 8-bit colors of a normal map: (n + 1) / 2 in r, g, b for x right, y up, z out; black without a normal.
 cv::Mat normal_map(const cv::Mat &normals);

@@ -2,10 +2,9 @@
 
 #include "common/picture.hpp"
 
-#include <assimp/Exporter.hpp>
-#include <assimp/scene.h>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 ofc_depth_map Surface::view() const
@@ -31,15 +30,6 @@ cv::Vec2d Surface::range() const
     return range;
 }
 
-ofc_depth_params DepthOptions::params() const
-{
-    ofc_depth_params params;
-    ofc_depth_params_default(&params);
-    params.method = method == "coupled" ? OFC_DEPTH_COUPLED : method == "paper" ? OFC_DEPTH_PAPER : OFC_DEPTH_POISSON;
-    params.pixel_pitch = pixel_pitch > 0 ? pixel_pitch : 1;
-    return params;
-}
-
 Surface integrate(const cv::Mat &normals, const cv::Mat &mask, const ofc_depth_params &params, const cv::Mat &known)
 {
     ofc_depth_input input = {};
@@ -62,12 +52,6 @@ Surface integrate(const cv::Mat &normals, const cv::Mat &mask, const ofc_depth_p
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     surface.milliseconds = elapsed.count();
     return surface;
-}
-
-void write_depth_tiff(const std::string &path, const cv::Mat &depth)
-{
-    constexpr int no_compression = 1;
-    write_image(path, depth, {cv::IMWRITE_TIFF_COMPRESSION, no_compression});
 }
 
 cv::Mat normals_of(const Surface &surface)
@@ -104,38 +88,24 @@ void write_mesh(const std::string &path, const Surface &surface, const cv::Mat &
                     triangles.push_back(t);
         }
 
-    auto *mesh = new aiMesh; // the scene owns all that follows
-    const auto count = static_cast<unsigned>(pixels.size());
-    mesh->mNumVertices = count;
-    mesh->mVertices = new aiVector3D[count];
-    mesh->mNormals = new aiVector3D[count];
-    mesh->mColors[0] = new aiColor4D[count];
-    for (unsigned i = 0; i < count; i++) {
-        const cv::Point at = pixels[i];
-        const cv::Vec3f n = normals.at<cv::Vec3f>(at);
+    std::ofstream file(path, std::ios::binary);
+    const auto put = [&](const auto &value) { file.write(reinterpret_cast<const char *>(&value), sizeof value); };
+    const bool little = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
+    file << "ply\nformat " << (little ? "binary_little_endian" : "binary_big_endian") << " 1.0\nelement vertex " << pixels.size()
+         << "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
+            "property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face "
+         << triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
+    for (const cv::Point &at : pixels) {
         const cv::Vec3b color = bgr.at<cv::Vec3b>(at);
-        mesh->mVertices[i] = {static_cast<float>((at.x - (depth.cols - 1) / 2.0) * pitch),
-                              static_cast<float>(((depth.rows - 1) / 2.0 - at.y) * pitch), depth.at<float>(at)};
-        mesh->mNormals[i] = {n[0], n[1], n[2]};
-        mesh->mColors[0][i] = {color[2] / 255.0F, color[1] / 255.0F, color[0] / 255.0F, 1};
+        put(cv::Vec3f(static_cast<float>((at.x - (depth.cols - 1) / 2.0) * pitch),
+                      static_cast<float>(((depth.rows - 1) / 2.0 - at.y) * pitch), depth.at<float>(at)));
+        put(normals.at<cv::Vec3f>(at));
+        put(cv::Vec3b(color[2], color[1], color[0]));
     }
-    mesh->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
-    mesh->mNumFaces = static_cast<unsigned>(triangles.size());
-    mesh->mFaces = new aiFace[triangles.size()];
-    for (std::size_t i = 0; i < triangles.size(); i++) {
-        const cv::Vec3i &t = triangles[i];
-        mesh->mFaces[i].mNumIndices = 3;
-        mesh->mFaces[i].mIndices =
-            new unsigned[3]{static_cast<unsigned>(t[0]), static_cast<unsigned>(t[1]), static_cast<unsigned>(t[2])};
+    for (const cv::Vec3i &triangle : triangles) {
+        put(uchar(3));
+        put(triangle);
     }
-    aiScene scene;
-    scene.mNumMeshes = 1;
-    scene.mMeshes = new aiMesh *[1]{mesh};
-    scene.mNumMaterials = 1;
-    scene.mMaterials = new aiMaterial *[1]{new aiMaterial};
-    scene.mRootNode = new aiNode;
-    scene.mRootNode->mNumMeshes = 1;
-    scene.mRootNode->mMeshes = new unsigned[1]{0};
-    if (Assimp::Exporter().Export(&scene, "plyb", path) != aiReturn_SUCCESS)
+    if (!file.flush())
         throw std::runtime_error("cannot write " + path);
 }

@@ -19,22 +19,10 @@ struct Surface {
     cv::Vec2d range() const;
 };
 
-// What the user wants of the integration.
-struct DepthOptions {
-    std::string method = "poisson"; // poisson, paper or coupled
-    double pixel_pitch = 0;         // 0 where not given: depth is in pixels
-
-    // "mm", or "pixels".
-    const char *unit() const { return pixel_pitch > 0 ? "mm" : "pixels"; }
-    ofc_depth_params params() const;
-};
-
 // Integrates normals (CV_32FC3 x, y, z, zero where there is none) over the mask (CV_8U, or empty for all of them).
 // Known depths (CV_32F, NaN where unknown) may be empty.
 Surface integrate(const cv::Mat &normals, const cv::Mat &mask, const ofc_depth_params &params,
                   const cv::Mat &known = cv::Mat());
-
-void write_depth_tiff(const std::string &path, const cv::Mat &depth);
 
 // Binary PLY: a vertex a pixel with depth, x right, y up, z toward the camera from the middle of the picture, in the unit
 // of depth; normals of the surface, and the colors of a BGR picture of the same size.

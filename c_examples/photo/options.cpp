@@ -21,6 +21,7 @@ Options parse_options(int argc, char **argv)
         ->check(CLI::Range(1, 10000000));
     app.add_option("--truth", options.truth, "True normals to compare with: TIFF of 3 x float32, x right, y up, z out")
         ->type_name("NORMALS.tiff");
+    options.depth.add_to(app);
     app.add_option("--out", options.out, "Folder for the results (default: out)")->type_name("DIR");
     try {
         app.parse(argc, argv);

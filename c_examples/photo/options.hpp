@@ -1,6 +1,8 @@
 // The command line of ofc_photo.
 #pragma once
 
+#include "common/depth_options.hpp"
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,6 +14,7 @@ struct Options {
     std::string mask, truth;         // empty where not given
     std::optional<std::uint64_t> seed;
     std::optional<std::uint32_t> subsets;
+    DepthOptions depth;
     std::string out = "out";
 };
 

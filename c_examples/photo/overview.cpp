@@ -1,5 +1,6 @@
 #include "photo/overview.hpp"
 
+#include "common/surface_view.hpp"
 #include "photo/plots.hpp"
 
 #include <opencv2/imgproc.hpp>
@@ -62,6 +63,7 @@ cv::Mat inlier_picture(const cv::Mat &looked_at, const Result &result)
 cv::Mat overview(const Picture &picture, const Result &result)
 {
     const bool has_curves = result.solution.slant_source != OFC_SLANTS_NONE;
+    const bool integrated = result.surface.integrated() && !result.surface.depth.empty();
     const std::string none = "none: see the reason below";
     const cv::Mat shown = picture.display();
     const cv::Rect part = interesting(shown);
@@ -72,9 +74,11 @@ cv::Mat overview(const Picture &picture, const Result &result)
         {"the surface relit from (1, 1, 1)", result.solved() ? fitted(shade(result.normals, {1, 1, 1})(part)) : message(none)},
         {"eqs. 25: solutions lie on the diagonal", has_curves ? plot_curves(result, panel) : message(none)},
         {"colors and their ellipsoid", plot_colors(picture, result, panel)},
+        {"depth, " + std::string(result.depth.unit()), integrated ? fitted(depth_colors(result.surface)(part)) : message(none)},
+        {"the surface from the side", integrated ? mesh_picture(result.surface, panel) : message(none)},
     };
     const std::vector<Line> lines = summary(result);
-    constexpr int columns = 3, rows = 2;
+    constexpr int columns = 4, rows = 2;
     const int row_height = title_height + panel.height + margin;
     cv::Mat sheet(rows * row_height + margin * 2 + static_cast<int>(lines.size()) * line_height,
                   columns * (panel.width + margin) + margin, CV_8UC3, background);

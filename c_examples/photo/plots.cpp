@@ -111,11 +111,6 @@ std::vector<std::vector<cv::Vec3d>> wireframe(const ofc_ellipsoid &ellipsoid)
 
 } // namespace
 
-void put_text(cv::Mat &image, const std::string &text, cv::Point at, double scale, cv::Scalar color)
-{
-    cv::putText(image, text, at, font, scale, color, 1, cv::LINE_AA);
-}
-
 cv::Mat plot_curves(const Result &result, cv::Size size)
 {
     cv::Mat plot(size, CV_8UC3, paper);

@@ -1,12 +1,8 @@
 // The two plots of the overview, after Figures 4(a) and 6(b) of the paper.
 #pragma once
 
+#include "common/draw.hpp"
 #include "photo/report.hpp"
-
-constexpr int font = 0; // cv::FONT_HERSHEY_SIMPLEX
-
-// Text with its baseline at `at`.
-void put_text(cv::Mat &image, const std::string &text, cv::Point at, double scale, cv::Scalar color);
 
 // f(sigma1) on the eight branches of eqs. 25, with the solutions marked; S is the chosen one.
 cv::Mat plot_curves(const Result &result, cv::Size size);

@@ -79,22 +79,6 @@ std::string text(const char *format, ...)
 
 } // namespace
 
-std::optional<double> median_angle_deg(const cv::Mat &normals, const cv::Mat &truth)
-{
-    std::vector<double> angles;
-    for (int y = 0; y < normals.rows; y++)
-        for (int x = 0; x < normals.cols; x++) {
-            const cv::Vec3d n = normals.at<cv::Vec3f>(y, x), t = truth.at<cv::Vec3f>(y, x);
-            if (cv::norm(n) > 0 && cv::norm(t) > 0)
-                angles.push_back(degrees(std::acos(std::clamp(n.dot(t) / (cv::norm(n) * cv::norm(t)), -1.0, 1.0))));
-        }
-    if (angles.empty())
-        return std::nullopt;
-    const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-    std::nth_element(angles.begin(), middle, angles.end());
-    return *middle;
-}
-
 Row row_of(const cv::Matx33d &f, int channel)
 {
     const double x = f(channel, 0), y = f(channel, 1), z = f(channel, 2);
@@ -134,6 +118,8 @@ void write_report(const std::string &path, const Result &result)
     };
     for (const auto &[stage, milliseconds] : result.milliseconds)
         report["ms"][stage] = std::round(milliseconds * 1000) / 1000;
+    if (result.solved())
+        report["depth"] = result.depth.report(result.surface);
     if (result.median_error_deg)
         report["median_error_deg"] = *result.median_error_deg;
     for (int c = 0; result.true_f && c < 3; c++) {
@@ -141,10 +127,7 @@ void write_report(const std::string &path, const Result &result)
         report["truth"][channel_names[c]] = {
             {"tilt_deg", row.tilt_deg}, {"slant_deg", row.slant_deg}, {"norm", row.norm}};
     }
-    std::ofstream file(path);
-    file << report.dump(2) << '\n';
-    if (!file)
-        throw std::runtime_error("cannot write " + path);
+    write_json(path, report);
 }
 
 std::vector<Line> summary(const Result &result)
@@ -174,5 +157,12 @@ std::vector<Line> summary(const Result &result)
     }
     if (result.median_error_deg)
         lines.push_back({"normals", text("median error %.2f degrees", *result.median_error_deg)});
+    if (const ofc_depth_result &d = result.surface.result; result.surface.integrated()) {
+        const cv::Vec2d range = result.surface.range();
+        lines.push_back({"depth", text("%s: %.4g %s over %d pixels in %d region%s, %s at residual %.0e in %d cycles",
+                                       result.depth.method.c_str(), range[1] - range[0], result.depth.unit(), d.pixel_count,
+                                       d.regions, d.regions == 1 ? "" : "s", d.converged ? "converged" : "stopped",
+                                       d.residual, d.cycles)});
+    }
     return lines;
 }

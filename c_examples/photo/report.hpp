@@ -1,6 +1,7 @@
 // What a run found, as JSON and as text.
 #pragma once
 
+#include "common/depth_options.hpp"
 #include "common/picture.hpp"
 
 #include <optional>
@@ -14,6 +15,8 @@ struct Result {
     ofc_solution solution = {}; // zero where the status is negative
     cv::Mat inliers;            // CV_8U, 255 for an inlier
     cv::Mat normals;            // CV_32FC3 x, y, z; zero where there is none
+    DepthOptions depth;         // what was wanted of it
+    Surface surface;            // empty where there are no normals
     std::vector<std::pair<std::string, double>> milliseconds; // by stage, in the order they run
 
     // Where the truth is known.
@@ -22,14 +25,6 @@ struct Result {
 
     bool solved() const { return status == OFC_STATUS_OK; }
 };
-
-constexpr double degrees(double radians)
-{
-    return radians * 180 / CV_PI;
-}
-
-// Median angle over the pixels where both have a normal; nothing where there is no such pixel.
-std::optional<double> median_angle_deg(const cv::Mat &normals, const cv::Mat &truth);
 
 // Tilt, slant and length of the rows of F.
 struct Row {

@@ -160,15 +160,14 @@ pub fn render(
     Ok(Rendering { largest, scale })
 }
 
-/// Writes the unit normals of a depth map, as [`DepthMap::normal`] has them, and (0, 0, 0) outside the mask.
+/// Writes the unit normals of a depth map, as [`DepthMap::normal`] has them, and (0, 0, 0) where there is no surface.
 ///
 /// # Errors
-/// [`RenderError::Size`] or [`RenderError::NonFiniteDepth`]; `normals` is then untouched.
+/// [`RenderError::Size`]; `normals` is then untouched.
 pub fn normals_from_depth(depth: &DepthMap, normals: &mut Rows<f32>) -> Result<(), RenderError> {
     if !normals.hold(depth.width() * 3, depth.height()) {
         return Err(RenderError::Size);
     }
-    depth.range().ok_or(RenderError::NonFiniteDepth)?;
     for y in 0..depth.height() {
         for x in 0..depth.width() {
             let normal = depth.normal(x, y).unwrap_or_default();

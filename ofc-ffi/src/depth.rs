@@ -13,6 +13,7 @@ use crate::types::count;
 use core::ffi::c_void;
 use ofc_core::depth::{self, DepthError, DepthInput, DepthParams, DepthResult, Method, Plane, Slopes};
 use ofc_core::image::span;
+use ofc_core::render::{Rows, normals_from_depth};
 
 /// What to do where a slope is unusable: its normal is not finite or faces away, or its weight is zero.
 pub type ofc_depth_method = i32;
@@ -301,7 +302,8 @@ pub unsafe extern "C" fn ofc_depth_normals(
         let written = extent(normals.cast_const(), need)?;
         disjoint(&[written], &[own, depths, mask])?;
         // SAFETY: checked and disjoint.
-        surface.write_normals(unsafe { output_slice(normals, need) }, stride).map_err(of_image_error)?;
+        let mut rows = Rows { values: unsafe { output_slice(normals, need) }, row_stride: stride };
+        normals_from_depth(&surface, &mut rows).map_err(|_| OFC_STATUS_STRIDE_TOO_SMALL)?;
         Ok(OFC_STATUS_OK)
     };
     of(body())

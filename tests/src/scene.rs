@@ -22,6 +22,13 @@ pub const CLEAN: [Light; 3] = [
     ([32.0, -160.0], [20.0, 35.0, 150.0]),
 ];
 
+/// The lights of the second sphere: other colors from other directions.
+pub const OTHER: [Light; 3] = [
+    ([25.0, 10.0], [90.0, 20.0, 70.0]),
+    ([35.0, 130.0], [20.0, 95.0, 15.0]),
+    ([30.0, -100.0], [15.0, 10.0, 80.0]),
+];
+
 /// A rendered picture and its truth.
 pub struct Scene {
     /// Pixels in a row.

@@ -205,7 +205,7 @@ fn bad_input_is_refused() {
         Err(CheckError::Size)
     );
     // A surface that covers no inlier.
-    let nowhere: Vec<u8> = [f32::NAN.to_ne_bytes(); 160 * 160].concat();
+    let nowhere = f32::NAN.to_ne_bytes().repeat(160 * 160);
     let nowhere = DepthMap::new(&nowhere, 160, 160, 4 * 160, 1.0).unwrap();
     let found = check(&image, |_| 1, &orientation, &coefficients, Some(&nowhere), &mut vec![0.0; need]);
     assert_eq!(found.unwrap().depth, Some(DepthCheck::default()));

@@ -512,11 +512,15 @@ fn bad_input_is_refused_and_outputs_stay_as_they_were() {
     let map = DepthMap::new(&nan, 4, 4, 16, 1.0).unwrap();
     assert_eq!(attempt(&map, &good, 4, 16, 12), Some(RenderError::NonFiniteDepth));
     let mut normals = [7.0; 48];
-    let mut rows = Rows { values: &mut normals[..], row_stride: 12 };
-    assert_eq!(normals_from_depth(&map, &mut rows), Err(RenderError::NonFiniteDepth));
-    rows.row_stride = 13;
+    let mut rows = Rows { values: &mut normals[..], row_stride: 13 };
     assert_eq!(normals_from_depth(&map, &mut rows), Err(RenderError::Size));
     assert_eq!(normals, [7.0; 48]);
+    // There is no surface where the depth is not finite: its neighbours have one-sided differences.
+    normals_from_depth(&map, &mut Rows { values: &mut normals[..], row_stride: 12 }).unwrap();
+    assert_eq!(
+        normals.as_chunks::<3>().0[..4],
+        [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0; 3], [0.0, 0.0, 1.0]]
+    );
     // The same infinity outside the mask is no matter, nor is an empty mask.
     let masked = map.with_mask(&[1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 0, 1], 4).unwrap();
     assert_eq!(attempt(&masked, &good, 4, 16, 12), None);

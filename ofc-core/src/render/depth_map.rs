@@ -141,27 +141,6 @@ impl<'a> DepthMap<'a> {
     }
 }
 
-impl DepthMap<'_> {
-    /// Writes the unit normal of every pixel, x, y, z, and zeros where there is no surface.
-    ///
-    /// # Shape
-    /// `normals` is height rows of width times three `f32`, rows `row_stride` `f32` apart; what lies between rows is left
-    /// alone.
-    ///
-    /// # Errors
-    /// As [`span`], and [`ImageError::TooShort`].
-    pub fn write_normals(&self, normals: &mut [f32], row_stride: usize) -> Result<(), ImageError> {
-        let need = span(self.width, self.height, 3, row_stride)?;
-        let normals = normals.get_mut(..need).ok_or(ImageError::TooShort)?;
-        for (y, row) in normals.chunks_mut(row_stride).enumerate() {
-            for (x, slot) in row.as_chunks_mut::<3>().0.iter_mut().take(self.width).enumerate() {
-                *slot = self.normal(x, y).unwrap_or_default().map(|component| component as f32);
-            }
-        }
-        Ok(())
-    }
-}
-
 /// The difference of depth a pixel along an axis.
 fn difference(before: Option<f64>, here: f64, after: Option<f64>) -> f64 {
     match (before, after) {

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Depth from normals: this library against what Python users reach for, in one run on one core.
 
-    tests/bench/depth_peers.py [--size 1024] [--repeats 5] [--venv DIR] [--direct]
+    tests/benches/depth_peers.py [--size 1024] [--repeats 5] [--venv DIR] [--direct]
 
 Makes a virtual environment (by default target/depth-peers) with numpy, scipy and pyamg, builds the release example
-`bench_depth`, and prints for a rectangle, a disc and a disc with necks, holes and islands: the time of every peer, the
+`depth_timer`, and prints for a rectangle, a disc and a disc with necks, holes and islands: the time of every peer, the
 error against the true surface, and the distance from the exact least-squares solution. Nothing of it is part of the normal
 build. `--direct` adds the sparse factorisation (SciPy's SuperLU) as a peer and reference; it is slow above 512.
 
@@ -111,7 +111,7 @@ def main():
     from scipy.sparse import linalg
 
     subprocess.run(
-        ["cargo", "build", "-q", "--release", "-p", "ofc-tests", "--example", "bench_depth"], cwd=ROOT, check=True
+        ["cargo", "build", "-q", "--release", "-p", "ofc-tests", "--example", "depth_timer"], cwd=ROOT, check=True
     )
     work = ROOT / "target" / "depth-peers-data"
     work.mkdir(parents=True, exist_ok=True)
@@ -122,7 +122,7 @@ def main():
         normals.tofile(work / "normals.f32")
         mask.astype(np.uint8).tofile(work / "mask.u8")
         masked = work / "mask.u8" if not mask.all() else "-"
-        program = ROOT / "target" / "release" / "examples" / "bench_depth"
+        program = ROOT / "target" / "release" / "examples" / "depth_timer"
         line = subprocess.run(
             [program, work / "normals.f32", masked, str(size), str(normals.shape[0]), work / "depth.f32", method,
              str(arguments.repeats)],

@@ -1,6 +1,6 @@
-//! Times depth integration and, with files, lets a script compare it with others: see `tests/bench/depth_peers.py`.
+//! Times depth integration and, with files, lets a script compare it with others: see `tests/benches/depth_peers.py`.
 //!
-//! `bench_depth NORMALS.f32 MASK.u8 WIDTH HEIGHT DEPTH.f32 [METHOD [REPEATS]]` reads tightly packed normals (three f32 a
+//! `depth_timer NORMALS.f32 MASK.u8 WIDTH HEIGHT DEPTH.f32 [METHOD [REPEATS]]` reads tightly packed normals (three f32 a
 //! pixel) and mask, writes the depth, and prints the best and the median time in milliseconds and the result.
 
 use ofc_core::depth::{DepthInput, DepthParams, Method, Plane, Slopes, integrate, workspace_len};
@@ -15,7 +15,7 @@ fn main() {
     let args: Vec<String> = std::env::args().collect();
     let [_, normals, mask, width, height, out, rest @ ..] = args.as_slice() else {
         eprintln!(
-            "bench_depth NORMALS.f32 MASK.u8|- WIDTH HEIGHT DEPTH.f32 [poisson|paper|coupled [REPEATS]]"
+            "depth_timer NORMALS.f32 MASK.u8|- WIDTH HEIGHT DEPTH.f32 [poisson|paper|coupled [REPEATS]]"
         );
         std::process::exit(2);
     };

@@ -1,0 +1,44 @@
+#include "common/depth_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+void DepthOptions::add_to(CLI::App &app)
+{
+    app.add_option("--integrate", method,
+                   "How to span pixels without a normal: poisson leaves them out, paper sets them flat, coupled bridges\n"
+                   "them smoothly (default: poisson)")
+        ->check(CLI::IsMember({"poisson", "paper", "coupled"}));
+    app.add_option("--pixel-pitch", pixel_pitch, "Width of a pixel on the surface in millimetres (default: depth in pixels)")
+        ->check(CLI::Range(1e-9, 1e9))
+        ->type_name("MM");
+}
+
+ofc_depth_params DepthOptions::params() const
+{
+    ofc_depth_params params;
+    ofc_depth_params_default(&params);
+    params.method = method == "coupled" ? OFC_DEPTH_COUPLED : method == "paper" ? OFC_DEPTH_PAPER : OFC_DEPTH_POISSON;
+    params.pixel_pitch = pixel_pitch > 0 ? pixel_pitch : 1;
+    return params;
+}
+
+nlohmann::json DepthOptions::report(const Surface &surface) const
+{
+    const ofc_depth_result &r = surface.result;
+    nlohmann::json report = {{"status", ofc_status_message(surface.status)},
+                             {"method", method},
+                             {"pixel_pitch", surface.params.pixel_pitch},
+                             {"unit", unit()},
+                             {"converged", r.converged == 1},
+                             {"cycles", r.cycles},
+                             {"residual", r.residual},
+                             {"tolerance", surface.params.tolerance},
+                             {"regions", r.regions},
+                             {"pixels", r.pixel_count},
+                             {"excluded", r.excluded_count},
+                             {"ms", surface.milliseconds}};
+    if (surface.integrated())
+        report["range"] = {surface.range()[0], surface.range()[1]};
+    return report;
+}
