@@ -73,7 +73,7 @@ int run(const Options &options)
     const std::filesystem::path out = options.out;
     make_folder(out);
     write_tiff(out / "depth.tiff", surface.depth);
-    write_image(out / "depth.png", depth_picture(surface, options.depth.unit()));
+    write_image(out / "depth.png", options.depth.picture(surface));
     write_image(out / "mesh.png", mesh_picture(surface, {960, 720}));
     write_mesh(out / "mesh.ply", surface, normal_map(normals));
     nlohmann::json report = options.depth.report(surface);
@@ -97,5 +97,6 @@ int run(const Options &options)
 
 int main(int argc, char **argv)
 {
-    return guarded("ofc_integrate", [&] { return run(parse(argc, argv)); });
+    const Options options = parse(argc, argv);
+    return guarded("ofc_integrate", [&] { return run(options); });
 }

@@ -2,11 +2,10 @@
 //
 // Shows how cv::Mat goes in and out of ofc, the whole solve and each of its stages, and what to do with a status.
 
-#include "common/surface_view.hpp"
+#include "common/scene.hpp"
 #include "photo/options.hpp"
 #include "photo/overview.hpp"
 #include "photo/report.hpp"
-#include "photo/scene.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -84,6 +83,19 @@ cv::Mat spanned(const cv::Mat &inliers, const cv::Mat &mask)
     return region;
 }
 
+// The answer against its own picture.
+std::optional<ofc_check_result> check(const Picture &picture, const Result &result)
+{
+    const ofc_image image = picture.view();
+    const ofc_depth_map depth = result.surface.view();
+    const std::size_t bytes = ofc_check_workspace_size(image.width, image.height);
+    std::vector<std::uint64_t> workspace = workspace_of(bytes);
+    ofc_check_result found;
+    const ofc_status status = ofc_check(&image, &result.solution, result.surface.integrated() ? &depth : nullptr,
+                                        workspace.data(), bytes, &found);
+    return status == OFC_STATUS_OK ? std::make_optional(found) : std::nullopt;
+}
+
 int run(const Options &options)
 {
     Picture picture;
@@ -94,7 +106,7 @@ int run(const Options &options)
     } else if (!options.image.empty()) {
         picture = read_picture(options.image);
     } else {
-        const Scene scene = render_scene();
+        const Scene scene = render(bust(), 1);
         picture = scene.picture;
         truth = scene.normals;
         true_f = scene.f;
@@ -110,14 +122,24 @@ int run(const Options &options)
     ofc_solve_params_default(&params);
     params.lmeds.seed = options.seed.value_or(params.lmeds.seed);
     params.lmeds.subsets = options.subsets.value_or(params.lmeds.subsets);
+    params.lmeds.method = options.least_squares ? OFC_FIT_LEAST_SQUARES : OFC_FIT_LEAST_MEDIAN;
     Result result = solve(picture, params);
     result.true_f = true_f;
     result.depth = options.depth;
-    if (result.solved())
+    if (result.solved()) {
         result.surface = integrate(result.normals, spanned(result.inliers, picture.mask), options.depth.params());
+        result.check = check(picture, result);
+        result.estimates = estimates_of(picture.view(), result.solution.inliers);
+    }
     if (result.solved() && !truth.empty())
         result.median_error_deg = median_angle_deg(result.normals, truth);
 
+    if (options.save_planes) {
+        const cv::Mat channels[] = {picture.channel(0), picture.channel(1), picture.channel(2)};
+        const char *names[] = {"plane_r.png", "plane_g.png", "plane_b.png"};
+        for (int c = 0; c < 3; c++)
+            write_image(out / names[c], channels[c]);
+    }
     write_report(out / "report.json", result);
     write_image(out / "inliers.png", result.inliers);
     write_image(out / "overview.png", overview(picture, result));
@@ -125,7 +147,7 @@ int run(const Options &options)
         write_image(out / "normals.png", normal_map(result.normals));
         write_normals_tiff(out / "normals.tiff", result.normals);
         write_tiff(out / "depth.tiff", result.surface.depth);
-        write_image(out / "depth.png", depth_picture(result.surface, options.depth.unit()));
+        write_image(out / "depth.png", options.depth.picture(result.surface));
         write_mesh(out / "mesh.ply", result.surface, picture.display());
     } else {
         // What an earlier run left there is not this picture's.
@@ -133,8 +155,11 @@ int run(const Options &options)
             std::filesystem::remove(out / name);
     }
 
-    for (const Line &line : summary(result))
-        std::fprintf(result.solved() ? stdout : stderr, "%-10s %s\n", line.label.c_str(), line.text.c_str());
+    if (options.paper_report && result.solved())
+        print_paper_report(result);
+    else
+        for (const Line &line : summary(result))
+            std::fprintf(result.solved() ? stdout : stderr, "%-10s %s\n", line.label.c_str(), line.text.c_str());
     std::printf("wrote %s: look at overview.png\n", std::filesystem::absolute(out).lexically_normal().c_str());
     return result.solved() ? 0 : 1;
 }

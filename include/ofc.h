@@ -1548,7 +1548,8 @@ ofc_status ofc_constrained_slants_nearest(const double *tilt_rad,
 // @param cosines     (h12, h13, h23), each in [-1, 1].
 // @param branch      1 to 8: the signs of the square roots, 1 for (+,+,+) and 8 for (-,-,-).
 // @param count       How many samples, at least 2, evenly over [0, pi/2] with both ends.
-// @param sigma1_rad  Output: `count` values.
+// @param slant_rad   Output: `count` times three: sigma1, and slants 2 and 3 that follow from it by eqs. 25, not confined to
+//                    [0, pi/2] and NaN where a square root has no real value.
 // @param f_rad       Output: `count` values, NaN where a square root has no real value.
 // @return OFC_STATUS_OK; OFC_STATUS_EMPTY for fewer than two samples; OFC_STATUS_INVALID_PARAMETER; the status of an
 //         invalid argument.
@@ -1558,7 +1559,7 @@ ofc_status ofc_slant_curve_sample(const double *tilt_rad,
                                   const double *cosines,
                                   int32_t branch,
                                   int32_t count,
-                                  double *sigma1_rad,
+                                  double *slant_rad,
                                   double *f_rad);
 
 // Sets every field to its default.

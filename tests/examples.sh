@@ -61,12 +61,40 @@ expect 2 "$photo" --integrate frankot
 expect 2 "$photo" --pixel-pitch 0
 # A normal map is no picture of a matte surface: refused or not, but with an answer and its own results.
 expect 0 "$photo" "$out/scene/normals.png" --truth "$out/scene/normals.tiff" --subsets 600 --seed 7 --out "$out/again"
-json "$out/again/report.json" 'r["parameters"] == {"seed": 7, "subsets": 600} and "median_error_deg" in r'
+json "$out/again/report.json" 'r["parameters"] == {"seed": 7, "subsets": 600, "fit": "median"} and "median_error_deg" in r'
 
 # The TIFF holds plain floats and reads back as what was written.
 python3 tests/plain_tiff.py "$out/again/normals.tiff" || fail "normals.tiff is compressed"
 expect 0 "$photo" "$out/scene/normals.png" --truth "$out/again/normals.tiff" --subsets 600 --seed 7 --out "$out/third"
 json "$out/third/report.json" 'r["median_error_deg"] < 0.001'
+
+# Table 1 beside the paper's own errors, on its kind of scene.
+table1=target/c_examples/ofc_table1
+expect 0 "$table1" --out "$out/table1"
+says "channel maxima"
+for file in depth.png color.png inliers.png curves.png integral.png shaded_truth.png shaded_result.png angular_error.png \
+    gray_error.png overview.png table1.json; do
+    [ -s "$out/table1/$file" ] || fail "no $file"
+done
+json "$out/table1/table1.json" 'r["median_error_deg"]["OFC"] < 21.51 and r["median_error_deg"]["OFC (correct tilts)"] < 16.80'
+json "$out/table1/table1.json" 'r["median_error_deg"]["best orthogonal matrix"] < r["median_error_deg"]["OFC"]'
+json "$out/table1/table1.json" 'len(r["median_error_deg"]) == 5 and all(r["median_error_deg"].values())'
+json "$out/table1/table1.json" '[round(v, 2) for v in r["table"][0]["values"]] == [-36.79, -149.91, -136.55]'
+json "$out/table1/table1.json" '[round(v, 2) for v in r["table"][2]["values"]] == [23.26, 30.63, 10.87]'
+expect 0 "$table1" "$out/scene/depth.tiff" --noise 0 --out "$out/table1_tiff"
+json "$out/table1_tiff/table1.json" 'r["noise"] == 0 and r["inliers"] > 30000'
+expect 2 "$table1" "$out/no-such-file.tiff"
+expect 2 "$table1" "$out/scene/normals.tiff"
+says "neither"
+expect 2 "$table1" --noise -1
+
+# Table 2 and section 5's checks of any photograph.
+expect 0 "$photo" --report paper --out "$out/paper"
+for line in "Lee-Rosenfeld" "correlation of input" "shaded depth" "coefficient"; do says "$line"; done
+json "$out/paper/report.json" 'all(c > 0.98 for c in r["check"]["correlation"]) and r["rank"] == dict(r["rank"], colors=3, normals=3)'
+json "$out/paper/report.json" 'all(abs(a) < 10 for a in r["check"]["depth"]["tilt_difference_deg"])'
+expect 2 "$photo" --report long
+expect 2 "$photo" --fit mean
 
 # Integration alone gives what ofc_photo gave, in millimetres, from floats; and nearly so from eight bits.
 integrate=target/c_examples/ofc_integrate
@@ -99,6 +127,14 @@ data=${OFC_DATA:-../shared/data}
 if [ -d "$data" ]; then
     expect 0 "$photo" "$data/cat_figurine/rgb.png" --mask "$data/cat_figurine/mask.png" --out "$out/cat"
     json "$out/cat/report.json" 'r["inliers"]["after_norms"] > 80000'
+    # Photometric stereo with unknown lights: the same three pictures as planes, by either fit.
+    expect 0 "$photo" "$data/cat_figurine/rgb.png" --mask "$data/cat_figurine/mask.png" --save-planes --out "$out/planes"
+    for fit in median squares; do
+        expect 0 "$photo" --planes "$out/planes/plane_r.png" "$out/planes/plane_g.png" "$out/planes/plane_b.png" \
+            --mask "$data/cat_figurine/mask.png" --truth "$out/cat/normals.tiff" --fit "$fit" --out "$out/stereo_$fit"
+    done
+    json "$out/stereo_median/report.json" 'r["median_error_deg"] < 0.001'
+    json "$out/stereo_squares/report.json" 'r["parameters"]["fit"] == "squares" and r["median_error_deg"] < 15'
     expect 1 "$photo" "$data/gelsight_groove_rank2/rgb.png" --mask "$data/gelsight_groove_rank2/mask.png" --out "$out/groove"
     says "dimensions"
     [ -s "$out/groove/report.json" ] || fail "a refusal without a report"

@@ -1,5 +1,7 @@
 #include "common/depth_options.hpp"
 
+#include "common/draw.hpp"
+
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -23,6 +25,11 @@ ofc_depth_params DepthOptions::params() const
     return params;
 }
 
+cv::Mat DepthOptions::picture(const Surface &surface) const
+{
+    return color_picture(surface.depth, range_of(surface.depth), std::string("depth toward the camera, ") + unit());
+}
+
 nlohmann::json DepthOptions::report(const Surface &surface) const
 {
     const ofc_depth_result &r = surface.result;
@@ -38,7 +45,9 @@ nlohmann::json DepthOptions::report(const Surface &surface) const
                              {"pixels", r.pixel_count},
                              {"excluded", r.excluded_count},
                              {"ms", surface.milliseconds}};
-    if (surface.integrated())
-        report["range"] = {surface.range()[0], surface.range()[1]};
+    if (surface.integrated()) {
+        const cv::Vec2d range = range_of(surface.depth);
+        report["range"] = {range[0], range[1]};
+    }
     return report;
 }

@@ -15,5 +15,6 @@ struct DepthOptions {
     void add_to(CLI::App &app);
     const char *unit() const { return pixel_pitch > 0 ? "mm" : "pixels"; }
     ofc_depth_params params() const;
+    cv::Mat picture(const Surface &surface) const;
     nlohmann::json report(const Surface &surface) const;
 };

@@ -12,14 +12,6 @@ std::string size_text(cv::Size size)
     return std::to_string(size.width) + " x " + std::to_string(size.height);
 }
 
-cv::Mat read(const std::string &path, int flags)
-{
-    cv::Mat image = cv::imread(path, flags);
-    if (image.empty())
-        throw UsageError("cannot read " + path + " as an image");
-    return image;
-}
-
 // The OFC_PIXEL_* of a Mat, or 0.
 ofc_pixel_format format_of(const cv::Mat &pixels, bool planes)
 {
@@ -59,6 +51,14 @@ cv::Mat first_and_third_swapped(const cv::Mat &image)
 
 } // namespace
 
+cv::Mat read_image(const std::string &path, int flags)
+{
+    cv::Mat image = cv::imread(path, flags);
+    if (image.empty())
+        throw UsageError("cannot read " + path + " as an image");
+    return image;
+}
+
 ofc_image Picture::view() const
 {
     ofc_image image = {};
@@ -74,15 +74,19 @@ ofc_image Picture::view() const
     return image;
 }
 
+cv::Mat Picture::channel(int index) const
+{
+    if (!green.empty())
+        return index == 0 ? pixels : index == 1 ? green : blue;
+    cv::Mat plane;
+    cv::extractChannel(pixels, plane, 2 - index);
+    return plane;
+}
+
 cv::Mat Picture::display() const
 {
     cv::Mat bgr;
-    if (!green.empty())
-        cv::merge(std::vector<cv::Mat>{blue, green, pixels}, bgr);
-    else if (pixels.channels() == 4)
-        cv::cvtColor(pixels, bgr, cv::COLOR_BGRA2BGR);
-    else
-        bgr = pixels;
+    cv::merge(std::vector<cv::Mat>{channel(2), channel(1), channel(0)}, bgr);
     cv::Mat shown = cv::Mat::zeros(bgr.size(), bgr.type());
     bgr.copyTo(shown, mask.empty() ? cv::Mat(bgr.size(), CV_8U, cv::Scalar(255)) : mask);
     double brightest = 0;
@@ -94,7 +98,7 @@ cv::Mat Picture::display() const
 Picture read_picture(const std::string &path)
 {
     Picture picture;
-    picture.pixels = read(path, cv::IMREAD_UNCHANGED);
+    picture.pixels = read_image(path, cv::IMREAD_UNCHANGED);
     if (picture.pixels.channels() < 3)
         throw UsageError(path + " is grayscale: ofc needs a color picture, or three grayscale ones with --planes");
     if (format_of(picture.pixels, false) == 0)
@@ -105,7 +109,7 @@ Picture read_picture(const std::string &path)
 Picture read_planes(const std::string &red, const std::string &green, const std::string &blue)
 {
     const auto plane = [](const std::string &path) {
-        cv::Mat image = read(path, cv::IMREAD_ANYDEPTH | cv::IMREAD_GRAYSCALE);
+        cv::Mat image = read_image(path, cv::IMREAD_ANYDEPTH | cv::IMREAD_GRAYSCALE);
         return image.isContinuous() ? image : image.clone(); // one stride for all three
     };
     Picture picture;
@@ -123,7 +127,7 @@ Picture read_planes(const std::string &red, const std::string &green, const std:
 
 cv::Mat read_mask(const std::string &path, cv::Size size)
 {
-    cv::Mat mask = read(path, cv::IMREAD_GRAYSCALE);
+    cv::Mat mask = read_image(path, cv::IMREAD_GRAYSCALE);
     if (mask.size() != size)
         throw UsageError("the mask is " + size_text(mask.size()) + ", the picture " + size_text(size));
     return mask;
@@ -131,7 +135,7 @@ cv::Mat read_mask(const std::string &path, cv::Size size)
 
 cv::Mat read_normals_tiff(const std::string &path, cv::Size size)
 {
-    const cv::Mat zyx = read(path, cv::IMREAD_UNCHANGED);
+    const cv::Mat zyx = read_image(path, cv::IMREAD_UNCHANGED);
     if (zyx.type() != CV_32FC3)
         throw UsageError(path + " is not a TIFF of 3 x 32-bit floats");
     if (zyx.size() != size)
@@ -141,7 +145,7 @@ cv::Mat read_normals_tiff(const std::string &path, cv::Size size)
 
 cv::Mat read_normal_map(const std::string &path)
 {
-    const cv::Mat colors = read(path, cv::IMREAD_UNCHANGED);
+    const cv::Mat colors = read_image(path, cv::IMREAD_UNCHANGED);
     if (colors.type() == CV_32FC3)
         return first_and_third_swapped(colors);
     if (colors.type() != CV_8UC3 && colors.type() != CV_16UC3)

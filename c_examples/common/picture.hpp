@@ -25,9 +25,15 @@ struct Picture {
     // The view of it; valid for as long as the Mats are.
     ofc_image view() const;
 
+    // Red, green or blue as one gray Mat.
+    cv::Mat channel(int index) const;
+
     // For the eye: 8-bit BGR, the brightest channel at 255, black outside the mask.
     cv::Mat display() const;
 };
+
+// cv::imread, or UsageError.
+cv::Mat read_image(const std::string &path, int flags);
 
 Picture read_picture(const std::string &path);
 Picture read_planes(const std::string &red, const std::string &green, const std::string &blue);

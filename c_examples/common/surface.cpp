@@ -18,18 +18,6 @@ ofc_depth_map Surface::view() const
     return map;
 }
 
-cv::Vec2d Surface::range() const
-{
-    cv::Vec2d range(HUGE_VAL, -HUGE_VAL);
-    for (int y = 0; y < depth.rows; y++)
-        for (int x = 0; x < depth.cols; x++) {
-            const double z = depth.at<float>(y, x);
-            if (std::isfinite(z))
-                range = {std::min(range[0], z), std::max(range[1], z)};
-        }
-    return range;
-}
-
 Surface integrate(const cv::Mat &normals, const cv::Mat &mask, const ofc_depth_params &params, const cv::Mat &known)
 {
     ofc_depth_input input = {};

@@ -15,8 +15,6 @@ struct Surface {
     bool integrated() const { return status == OFC_STATUS_OK || status == OFC_STATUS_NOT_CONVERGED; }
     // The view of it that ofc_check() takes; valid for as long as this is.
     ofc_depth_map view() const;
-    // Least and largest depth.
-    cv::Vec2d range() const;
 };
 
 // Integrates normals (CV_32FC3 x, y, z, zero where there is none) over the mask (CV_8U, or empty for all of them).

@@ -21,6 +21,12 @@ Options parse_options(int argc, char **argv)
         ->check(CLI::Range(1, 10000000));
     app.add_option("--truth", options.truth, "True normals to compare with: TIFF of 3 x float32, x right, y up, z out")
         ->type_name("NORMALS.tiff");
+    std::string fit = "median", report = "short";
+    app.add_option("--fit", fit, "How C is fitted: least median of squares, or least squares over every pixel (default: median)")
+        ->check(CLI::IsMember({"median", "squares"}));
+    app.add_flag("--save-planes", options.save_planes, "Write the channels as three gray pictures, as --planes takes them");
+    app.add_option("--report", report, "What is printed: paper is Table 2 and section 5's checks (default: short)")
+        ->check(CLI::IsMember({"short", "paper"}));
     options.depth.add_to(app);
     app.add_option("--out", options.out, "Folder for the results (default: out)")->type_name("DIR");
     try {
@@ -30,5 +36,7 @@ Options parse_options(int argc, char **argv)
     } catch (const CLI::ParseError &error) {
         std::exit(app.exit(error) == 0 ? 0 : 2);
     }
+    options.least_squares = fit == "squares";
+    options.paper_report = report == "paper";
     return options;
 }

@@ -1,36 +1,11 @@
 #include "photo/overview.hpp"
 
+#include "common/plots.hpp"
 #include "common/surface_view.hpp"
-#include "photo/plots.hpp"
 
 #include <opencv2/imgproc.hpp>
 
 namespace {
-
-const cv::Scalar background(244, 244, 244), ink(40, 40, 40), dark(30, 30, 30);
-const cv::Size panel(520, 440);
-constexpr int margin = 20, title_height = 34, line_height = 24;
-
-// `image` in the middle of a dark panel, as large as it fits.
-cv::Mat fitted(const cv::Mat &image)
-{
-    cv::Mat bgr = image;
-    if (image.channels() == 1)
-        cv::cvtColor(image, bgr, cv::COLOR_GRAY2BGR);
-    const double scale = std::min(panel.width / double(image.cols), panel.height / double(image.rows));
-    const cv::Size size(std::max(1, cvRound(image.cols * scale)), std::max(1, cvRound(image.rows * scale)));
-    cv::resize(bgr, bgr, size, 0, 0, scale < 1 ? cv::INTER_AREA : scale > 3 ? cv::INTER_NEAREST : cv::INTER_LINEAR);
-    cv::Mat framed(panel, CV_8UC3, dark);
-    bgr.copyTo(framed(cv::Rect((panel.width - size.width) / 2, (panel.height - size.height) / 2, size.width, size.height)));
-    return framed;
-}
-
-cv::Mat message(const std::string &text)
-{
-    cv::Mat image(panel, CV_8UC3, dark);
-    put_text(image, text, {20, panel.height / 2}, 0.55, cv::Scalar(200, 200, 200));
-    return image;
-}
 
 // The part of the picture that holds the object, with a little around it.
 cv::Rect interesting(const cv::Mat &shown)
@@ -62,36 +37,26 @@ cv::Mat inlier_picture(const cv::Mat &looked_at, const Result &result)
 
 cv::Mat overview(const Picture &picture, const Result &result)
 {
-    const bool has_curves = result.solution.slant_source != OFC_SLANTS_NONE;
-    const bool integrated = result.surface.integrated() && !result.surface.depth.empty();
-    const std::string none = "none: see the reason below";
     const cv::Mat shown = picture.display();
     const cv::Rect part = interesting(shown);
-    const std::pair<std::string, cv::Mat> panels[] = {
-        {"input x mask", fitted(shown(part))},
-        {"inliers (white), rejected (orange)", fitted(inlier_picture(shown, result)(part))},
-        {"normals: x right, y up, z out as r, g, b", result.solved() ? fitted(normal_map(result.normals)(part)) : message(none)},
-        {"the surface relit from (1, 1, 1)", result.solved() ? fitted(shade(result.normals, {1, 1, 1})(part)) : message(none)},
-        {"eqs. 25: solutions lie on the diagonal", has_curves ? plot_curves(result, panel) : message(none)},
-        {"colors and their ellipsoid", plot_colors(picture, result, panel)},
-        {"depth, " + std::string(result.depth.unit()), integrated ? fitted(depth_colors(result.surface)(part)) : message(none)},
-        {"the surface from the side", integrated ? mesh_picture(result.surface, panel) : message(none)},
+    Sheet sheet;
+    sheet.columns = 4;
+    const auto add = [&](const std::string &title, bool there, auto image) {
+        if (there)
+            sheet.add(title, image());
+        else
+            sheet.add(title, std::string("none: see the reason below"));
     };
-    const std::vector<Line> lines = summary(result);
-    constexpr int columns = 4, rows = 2;
-    const int row_height = title_height + panel.height + margin;
-    cv::Mat sheet(rows * row_height + margin * 2 + static_cast<int>(lines.size()) * line_height,
-                  columns * (panel.width + margin) + margin, CV_8UC3, background);
-    for (int i = 0; i < rows * columns; i++) {
-        const cv::Point corner(margin + (i % columns) * (panel.width + margin), (i / columns) * row_height + title_height);
-        put_text(sheet, panels[i].first, corner + cv::Point(0, -10), 0.6, ink);
-        panels[i].second.copyTo(sheet(cv::Rect(corner, panel)));
-    }
-    int y = rows * row_height + margin + 10;
-    for (const Line &line : lines) {
-        put_text(sheet, line.label, {margin, y}, 0.55, ink);
-        put_text(sheet, line.text, {margin + 110, y}, 0.55, ink);
-        y += line_height;
-    }
-    return sheet;
+    sheet.add("input x mask", shown(part));
+    sheet.add("inliers (white), rejected (orange)", inlier_picture(shown, result)(part));
+    add("normals: x right, y up, z out as r, g, b", result.solved(), [&] { return normal_map(result.normals)(part); });
+    add("the surface relit from (1, 1, 1)", result.solved(), [&] { return shade(result.normals, {1, 1, 1})(part); });
+    add("eqs. 25: solutions lie on the diagonal", result.solution.slant_source != OFC_SLANTS_NONE,
+        [&] { return plot_curves(result.solution, sheet.panel); });
+    sheet.add("colors and their ellipsoid", plot_colors(picture, result.solution, result.inliers, sheet.panel));
+    const bool integrated = result.surface.integrated() && !result.surface.depth.empty();
+    const cv::Mat &depth = result.surface.depth;
+    add("depth, " + std::string(result.depth.unit()), integrated, [&] { return colors_of(depth, range_of(depth))(part); });
+    add("the surface from the side", integrated, [&] { return mesh_picture(result.surface, sheet.panel); });
+    return sheet.draw(summary(result));
 }

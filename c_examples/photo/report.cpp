@@ -65,6 +65,22 @@ json coefficients(const ofc_color_fit &fit)
     return list;
 }
 
+json check_report(const ofc_check_result &check)
+{
+    return {{"correlation", check.correlation},
+            {"norms", {{"median", check.norm_median}, {"min", check.norm_min}, {"max", check.norm_max}}},
+            {"tilt_deg", in_degrees(check.tilts.tilt_rad)},
+            {"relit_tilt_deg", in_degrees(check.relit_tilts.tilt_rad)},
+            {"tilt_difference_deg", in_degrees(check.tilt_difference_rad)},
+            {"tilt_residual_deg", in_degrees(check.tilt_residual_rad)},
+            {"depth",
+             {{"pixels", check.depth_pixel_count},
+              {"median_angle_deg", degrees(check.depth_angle_median_rad)},
+              {"tilt_deg", in_degrees(check.depth_tilts.tilt_rad)},
+              {"tilt_difference_deg", in_degrees(check.depth_tilt_difference_rad)}}},
+            {"largest_p", check.largest_p}};
+}
+
 std::string text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 std::string text(const char *format, ...)
@@ -79,12 +95,6 @@ std::string text(const char *format, ...)
 
 } // namespace
 
-Row row_of(const cv::Matx33d &f, int channel)
-{
-    const double x = f(channel, 0), y = f(channel, 1), z = f(channel, 2);
-    return {degrees(std::atan2(y, x)), degrees(std::atan2(std::hypot(x, y), z)), std::hypot(x, y, z)};
-}
-
 void write_report(const std::string &path, const Result &result)
 {
     const ofc_solution &s = result.solution;
@@ -92,7 +102,9 @@ void write_report(const std::string &path, const Result &result)
         {"status", ofc_status_message(result.status)},
         {"status_code", result.status},
         {"version", ofc_version_string()},
-        {"parameters", {{"seed", result.params.lmeds.seed}, {"subsets", s.fit.subsets}}},
+        {"parameters", {{"seed", result.params.lmeds.seed},
+          {"subsets", s.fit.subsets},
+          {"fit", result.params.lmeds.method == OFC_FIT_LEAST_SQUARES ? "squares" : "median"}}},
         {"pixels",
          {{"usable", s.census.usable},
           {"masked_out", s.census.masked_out},
@@ -118,14 +130,25 @@ void write_report(const std::string &path, const Result &result)
     };
     for (const auto &[stage, milliseconds] : result.milliseconds)
         report["ms"][stage] = std::round(milliseconds * 1000) / 1000;
+    if (result.status >= 0)
+        report["rank"] = {{"colors", s.rank.colors},
+                          {"normals", s.rank.normals},
+                          {"color_deviations", s.rank.color_deviations},
+                          {"color_noise", s.rank.color_noise},
+                          {"normal_deviations", s.rank.normal_deviations},
+                          {"normal_noise", s.rank.normal_noise}};
+    if (result.check)
+        report["check"] = check_report(*result.check);
     if (result.solved())
         report["depth"] = result.depth.report(result.surface);
     if (result.median_error_deg)
         report["median_error_deg"] = *result.median_error_deg;
-    for (int c = 0; result.true_f && c < 3; c++) {
-        const Row row = row_of(*result.true_f, c);
-        report["truth"][channel_names[c]] = {
-            {"tilt_deg", row.tilt_deg}, {"slant_deg", row.slant_deg}, {"norm", row.norm}};
+    if (result.true_f) {
+        const Directions truth = directions_of(*result.true_f);
+        for (int c = 0; c < 3; c++)
+            report["truth"][channel_names[c]] = {{"tilt_deg", degrees(truth.tilts[c])},
+                                                 {"slant_deg", degrees(truth.slants[c])},
+                                                 {"norm", truth.norms[c]}};
     }
     write_json(path, report);
 }
@@ -150,19 +173,50 @@ std::vector<Line> summary(const Result &result)
         std::string line = text("tilt %7.2f  slant %5.2f  norm %6.1f", degrees(s.tilts.tilt_rad[c]),
                                 degrees(s.slant_rad[c]), s.ellipsoid.norms[c]);
         if (result.true_f) {
-            const Row row = row_of(*result.true_f, c);
-            line += text("   (true %7.2f  %5.2f  %6.1f)", row.tilt_deg, row.slant_deg, row.norm);
+            const Directions truth = directions_of(*result.true_f);
+            line += text("   (true %7.2f  %5.2f  %6.1f)", degrees(truth.tilts[c]), degrees(truth.slants[c]), truth.norms[c]);
         }
         lines.push_back({channel_names[c], line});
     }
     if (result.median_error_deg)
         lines.push_back({"normals", text("median error %.2f degrees", *result.median_error_deg)});
     if (const ofc_depth_result &d = result.surface.result; result.surface.integrated()) {
-        const cv::Vec2d range = result.surface.range();
+        const cv::Vec2d range = range_of(result.surface.depth);
         lines.push_back({"depth", text("%s: %.4g %s over %d pixels in %d region%s, %s at residual %.0e in %d cycles",
                                        result.depth.method.c_str(), range[1] - range[0], result.depth.unit(), d.pixel_count,
                                        d.regions, d.regions == 1 ? "" : "s", d.converged ? "converged" : "stopped",
                                        d.residual, d.cycles)});
     }
     return lines;
+}
+
+void print_paper_report(const Result &result)
+{
+    const ofc_solution &s = result.solution;
+    const auto triple = [](const double *values) { return Triple{values[0], values[1], values[2]}; };
+    Table table;
+    table.angles("tilt", "Pentland", result.estimates.pentland_tilts);
+    table.angles("slant", "OFC", triple(s.slant_rad));
+    table.angles("slant", "Pentland", result.estimates.pentland_slants);
+    table.angles("slant", "Lee-Rosenfeld", result.estimates.lee_rosenfeld_slants);
+    table.numbers("norm", "OFC", triple(s.ellipsoid.norms));
+    table.numbers("norm", "channel maxima", result.estimates.channel_maxima);
+    table.print();
+    std::printf("\nrobust R^2 %.4f, location of norms %.4f\n", s.fit.r_squared, s.norm_location.location);
+    for (const auto &c : s.fit.coefficients)
+        std::printf("  coefficient %12.4e, t %8.1f, p %.2g\n", c.value, c.t, c.p);
+    std::printf("ranks: colors %d, normals %d\n", s.rank.colors, s.rank.normals);
+    if (!result.check)
+        return;
+    const ofc_check_result &check = *result.check;
+    std::printf("norms of normals: median %.4f, from %.4f to %.4f\n", check.norm_median, check.norm_min, check.norm_max);
+    std::printf("correlation of input and relit channels: %.5f, %.5f, %.5f\n", check.correlation[0], check.correlation[1],
+                check.correlation[2]);
+    const auto angles = [](const char *what, const double *values) {
+        std::printf("%s: %.2f, %.2f, %.2f degrees\n", what, degrees(values[0]), degrees(values[1]), degrees(values[2]));
+    };
+    angles("Pentland's tilts on the relit channels, minus the input's", check.tilt_difference_rad);
+    angles("Pentland's tilts on the shaded depth, minus the input's", check.depth_tilt_difference_rad);
+    std::printf("median angle between the normals and those of the depth: %.2f degrees\n",
+                degrees(check.depth_angle_median_rad));
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "common/depth_options.hpp"
+#include "common/draw.hpp"
+#include "common/estimates.hpp"
 #include "common/picture.hpp"
 
 #include <optional>
@@ -17,6 +19,8 @@ struct Result {
     cv::Mat normals;            // CV_32FC3 x, y, z; zero where there is none
     DepthOptions depth;         // what was wanted of it
     Surface surface;            // empty where there are no normals
+    std::optional<ofc_check_result> check; // where there are normals
+    Estimates estimates = {};              // likewise
     std::vector<std::pair<std::string, double>> milliseconds; // by stage, in the order they run
 
     // Where the truth is known.
@@ -26,16 +30,10 @@ struct Result {
     bool solved() const { return status == OFC_STATUS_OK; }
 };
 
-// Tilt, slant and length of the rows of F.
-struct Row {
-    double tilt_deg, slant_deg, norm;
-};
-Row row_of(const cv::Matx33d &f, int channel);
-
 void write_report(const std::string &path, const Result &result);
 
 // The main numbers in a few lines, each with a short label, for the terminal and the overview.
-struct Line {
-    std::string label, text;
-};
 std::vector<Line> summary(const Result &result);
+
+// Table 2 and the checks of section 5, for the terminal.
+void print_paper_report(const Result &result);

@@ -22,7 +22,7 @@ mod curve;
 mod least_squares;
 mod roots;
 
-pub use curve::curve;
+pub use curve::{CurvePoint, curve};
 pub use least_squares::{NearestSlants, least_squares};
 pub use roots::roots;
 

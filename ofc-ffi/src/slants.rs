@@ -2,12 +2,12 @@
 
 use crate::pointers::{Out, disjoint, extent, input_array, output_slice};
 use crate::status::{
-    OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_CONSISTENT_SLANTS, OFC_STATUS_OK, of,
-    ofc_status,
+    OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_CONSISTENT_SLANTS, OFC_STATUS_OK,
+    OFC_STATUS_TOO_LARGE, of, ofc_status,
 };
 use crate::types::ofc_slants;
 use core::f64::consts::FRAC_PI_2;
-use ofc_core::constrained_slant;
+use ofc_core::constrained_slant::{self, CurvePoint};
 
 /// No more slants than this are consistent with three tilts and three cosines.
 pub const OFC_MAX_CANDIDATES: usize = 8;
@@ -105,7 +105,8 @@ pub unsafe extern "C" fn ofc_constrained_slants_nearest(
 /// @param cosines     (h12, h13, h23), each in [-1, 1].
 /// @param branch      1 to 8: the signs of the square roots, 1 for (+,+,+) and 8 for (-,-,-).
 /// @param count       How many samples, at least 2, evenly over [0, pi/2] with both ends.
-/// @param sigma1_rad  Output: `count` values.
+/// @param slant_rad   Output: `count` times three: sigma1, and slants 2 and 3 that follow from it by eqs. 25, not confined to
+///                    [0, pi/2] and NaN where a square root has no real value.
 /// @param f_rad       Output: `count` values, NaN where a square root has no real value.
 /// @return OFC_STATUS_OK; OFC_STATUS_EMPTY for fewer than two samples; OFC_STATUS_INVALID_PARAMETER; the status of an
 ///         invalid argument.
@@ -117,16 +118,17 @@ pub unsafe extern "C" fn ofc_slant_curve_sample(
     cosines: *const f64,
     branch: i32,
     count: i32,
-    sigma1_rad: *mut f64,
+    slant_rad: *mut f64,
     f_rad: *mut f64,
 ) -> ofc_status {
     let body = || {
         let (tilts, tilts_extent) = input_array::<f64, 3>(tilt_rad)?;
         let (cosines, cosines_extent) = input_array::<f64, 3>(cosines)?;
         let samples = crate::image::dimension(count);
-        let (sigma_extent, f_extent) =
-            (extent(sigma1_rad.cast_const(), samples)?, extent(f_rad.cast_const(), samples)?);
-        disjoint(&[sigma_extent, f_extent], &[tilts_extent, cosines_extent])?;
+        let values = samples.checked_mul(3).ok_or(OFC_STATUS_TOO_LARGE)?;
+        let (slant_extent, f_extent) =
+            (extent(slant_rad.cast_const(), values)?, extent(f_rad.cast_const(), samples)?);
+        disjoint(&[slant_extent, f_extent], &[tilts_extent, cosines_extent])?;
         if samples < 2 {
             return Err(OFC_STATUS_EMPTY);
         }
@@ -134,10 +136,12 @@ pub unsafe extern "C" fn ofc_slant_curve_sample(
         let branch =
             u8::try_from(branch).ok().filter(|b| (1..=8).contains(b)).ok_or(OFC_STATUS_INVALID_PARAMETER)?;
         // SAFETY: checked and disjoint.
-        let (sigmas, values) = unsafe { (output_slice(sigma1_rad, samples), output_slice(f_rad, samples)) };
-        for (i, (sigma, value)) in sigmas.iter_mut().zip(values).enumerate() {
-            *sigma = FRAC_PI_2 * i as f64 / (samples - 1) as f64;
-            *value = constrained_slant::curve(branch, *sigma, tilts, cosines).unwrap_or(f64::NAN);
+        let (slants, values) = unsafe { (output_slice(slant_rad, values), output_slice(f_rad, samples)) };
+        for (i, (slants, value)) in slants.as_chunks_mut::<3>().0.iter_mut().zip(values).enumerate() {
+            let sigma1 = FRAC_PI_2 * i as f64 / (samples - 1) as f64;
+            let nothing = CurvePoint { slants: [sigma1, f64::NAN, f64::NAN], f: f64::NAN };
+            let point = constrained_slant::curve(branch, sigma1, tilts, cosines).unwrap_or(nothing);
+            (*slants, *value) = (point.slants, point.f);
         }
         Ok(OFC_STATUS_OK)
     };

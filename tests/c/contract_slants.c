@@ -7,7 +7,7 @@ static struct {
     ofc_slants candidates[OFC_MAX_CANDIDATES];
     ofc_slants behind;
     int32_t count;
-    double sigma[33], f[33];
+    double slant[33][3], f[33];
 } out;
 
 /* Figure 1: unit vectors at (slant, tilt) (40, 20), (30, -120), (5, 0) degrees. */
@@ -53,7 +53,7 @@ static ofc_status nearest(const double *t, const double *h)
 
 static ofc_status sample(const double *t, const double *h)
 {
-    return ofc_slant_curve_sample(t, h, 1, 32, out.sigma, out.f);
+    return ofc_slant_curve_sample(t, h, 1, 32, out.slant[0], out.f);
 }
 
 static void constrained_slants_find(void **state)
@@ -110,25 +110,31 @@ static void slant_curve_sample(void **state)
     refuses_bad_angles(sample);
 #define SAMPLE(branch, count, sigma, f) ofc_slant_curve_sample(tilts, cosines, branch, count, sigma, f)
     REFUSED(OFC_STATUS_NULL_POINTER, out, SAMPLE(1, 32, NULL, out.f));
-    REFUSED(OFC_STATUS_NULL_POINTER, out, SAMPLE(1, 32, out.sigma, NULL));
-    REFUSED(OFC_STATUS_MISALIGNED, out, SAMPLE(1, 32, MISALIGNED(out.sigma), out.f));
-    REFUSED(OFC_STATUS_MISALIGNED, out, SAMPLE(1, 32, out.sigma, MISALIGNED(out.f)));
-    REFUSED(OFC_STATUS_OVERLAP, out, SAMPLE(1, 32, out.sigma, out.sigma + 31));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, SAMPLE(1, 32, out.slant[0], NULL));
+    REFUSED(OFC_STATUS_MISALIGNED, out, SAMPLE(1, 32, MISALIGNED(out.slant), out.f));
+    REFUSED(OFC_STATUS_MISALIGNED, out, SAMPLE(1, 32, out.slant[0], MISALIGNED(out.f)));
+    REFUSED(OFC_STATUS_OVERLAP, out, SAMPLE(1, 32, out.slant[0], out.slant[31]));
     REFUSED(OFC_STATUS_OVERLAP, out, SAMPLE(1, 3, tilts, out.f));
-    REFUSED(OFC_STATUS_EMPTY, out, SAMPLE(1, 1, out.sigma, out.f));
-    REFUSED(OFC_STATUS_EMPTY, out, SAMPLE(1, 0, out.sigma, out.f));
-    REFUSED(OFC_STATUS_EMPTY, out, SAMPLE(1, INT32_MIN, out.sigma, out.f));
-    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, SAMPLE(0, 32, out.sigma, out.f));
-    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, SAMPLE(9, 32, out.sigma, out.f));
-    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, SAMPLE(-1, 32, out.sigma, out.f));
-    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, SAMPLE(257, 32, out.sigma, out.f));
+    REFUSED(OFC_STATUS_EMPTY, out, SAMPLE(1, 1, out.slant[0], out.f));
+    REFUSED(OFC_STATUS_EMPTY, out, SAMPLE(1, 0, out.slant[0], out.f));
+    REFUSED(OFC_STATUS_EMPTY, out, SAMPLE(1, INT32_MIN, out.slant[0], out.f));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, SAMPLE(0, 32, out.slant[0], out.f));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, SAMPLE(9, 32, out.slant[0], out.f));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, SAMPLE(-1, 32, out.slant[0], out.f));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, SAMPLE(257, 32, out.slant[0], out.f));
     memset(&out, PATTERN, sizeof out);
-    assert_int_equal(SAMPLE(1, 32, out.sigma, out.f), OFC_STATUS_OK);
-    assert_true(is_untouched(&out.sigma[32], sizeof(double)) && is_untouched(&out.f[32], sizeof(double)));
-    assert_true(out.sigma[0] == 0 && fabs(out.sigma[31] / DEGREES - 90) < 1e-12);
+    assert_int_equal(SAMPLE(1, 32, out.slant[0], out.f), OFC_STATUS_OK);
+    assert_true(is_untouched(out.slant[32], sizeof out.slant[32]) && is_untouched(&out.f[32], sizeof(double)));
+    assert_true(out.slant[0][0] == 0 && fabs(out.slant[31][0] / DEGREES - 90) < 1e-12);
     int values = 0, gaps = 0;
-    for (int i = 0; i < 32; i++)
+    for (int i = 0; i < 32; i++) {
         isnan(out.f[i]) ? gaps++ : values++;
+        assert_int_equal(isnan(out.f[i]) != 0, isnan(out.slant[i][1]) != 0 && isnan(out.slant[i][2]) != 0);
+        if (!isnan(out.f[i])) { /* slant 2 obeys the first of eqs. 24 */
+            const double *s = out.slant[i];
+            assert_true(fabs(cos(tilts[0] - tilts[1]) * sin(s[0]) * sin(s[1]) + cos(s[0]) * cos(s[1]) - cosines[0]) < 1e-9);
+        }
+    }
     assert_true(values > 0 && gaps > 0);
 }
 

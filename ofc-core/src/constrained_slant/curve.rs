@@ -6,11 +6,19 @@ use libm::{atan, sincos, sqrt};
 /// An argument of the square root this little below zero is a zero that rounding has moved.
 const ROUNDING: f64 = 1e-15;
 
-/// f(sigma1) of one of the eight cases of eqs. 25: from slant 1 follows slant 2 (25a), from it slant 3 (25b), from it
+/// A point of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// sigma1, and slants 2 and 3 that follow from it; these are not confined to [0, pi/2].
+    pub slants: [f64; 3],
+    /// f(sigma1), in [-pi, pi].
+    pub f: f64,
+}
+
+/// One of the eight cases of eqs. 25 at sigma1: from slant 1 follows slant 2 (25a), from it slant 3 (25b), from it
 /// slant 1 again (25c). Where f(sigma1) = sigma1 there is a solution of eqs. 24, of use if all its slants are slants.
 ///
-/// Case 1 is (+,+,+), case 2 (+,+,-), case 8 (-,-,-): the signs of 25a, 25b, 25c. Slants 2 and 3 are not confined to
-/// [0, pi/2] on the way, nor is the result, which lies in [-pi, pi].
+/// Case 1 is (+,+,+), case 2 (+,+,-), case 8 (-,-,-): the signs of 25a, 25b, 25c.
 ///
 /// # Units
 /// Radians; `cosines` are (h12, h13, h23).
@@ -22,7 +30,7 @@ const ROUNDING: f64 = 1e-15;
 /// # Reference
 /// Eqs. 25a-25c, Figures 2, 4(a), 6(d).
 #[must_use]
-pub fn curve(branch: u8, sigma1: f64, tilts: [f64; 3], cosines: [f64; 3]) -> Option<f64> {
+pub fn curve(branch: u8, sigma1: f64, tilts: [f64; 3], cosines: [f64; 3]) -> Option<CurvePoint> {
     if !(1..=8).contains(&branch) || !sigma1.is_finite() {
         return None;
     }
@@ -30,7 +38,8 @@ pub fn curve(branch: u8, sigma1: f64, tilts: [f64; 3], cosines: [f64; 3]) -> Opt
     let sign = |bit: u8| if (branch - 1) & bit == 0 { 1.0 } else { -1.0 };
     let sigma2 = next_slant(sigma1, k12, h12, sign(4))?;
     let sigma3 = next_slant(sigma2, k23, h23, sign(2))?;
-    next_slant(sigma3, k13, h13, sign(1))
+    let f = next_slant(sigma3, k13, h13, sign(1))?;
+    Some(CurvePoint { slants: [sigma1, sigma2, sigma3], f })
 }
 
 /// One of eqs. 25: the other channel's slant.
@@ -75,10 +84,14 @@ mod tests {
         for _ in 0..300 {
             let (_, tilts, cosines) = random_case(&mut rng);
             for root in roots(tilts, cosines) {
-                let [s1, ..] = root.slants;
-                let value = curve(root.branch, s1, tilts, cosines).unwrap();
+                let [s1, s2, s3] = root.slants;
+                let point = curve(root.branch, s1, tilts, cosines).unwrap();
+                let [same, sigma2, sigma3] = point.slants;
+                assert_eq!(same, s1);
                 // Near a fold the curve is as steep as a square root, and so is the error.
-                assert!((value - s1).abs() < 1e-5, "{root:?} {value}");
+                for (value, slant) in [(sigma2, s2), (sigma3, s3), (point.f, s1)] {
+                    assert!((value - slant).abs() < 1e-5, "{root:?} {point:?}");
+                }
                 seen[usize::from(root.branch)] += 1;
             }
         }

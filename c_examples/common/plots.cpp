@@ -1,4 +1,6 @@
-#include "photo/plots.hpp"
+#include "common/plots.hpp"
+
+#include "common/draw.hpp"
 
 #include <array>
 #include <cmath>
@@ -6,57 +8,33 @@
 
 namespace {
 
-const cv::Scalar paper(255, 255, 255), ink(60, 60, 60), faint(222, 222, 222), red(40, 40, 210), gray(150, 150, 150);
+const cv::Scalar red(40, 40, 210), gray(150, 150, 150);
 
 // One color a branch, told apart also by people who see red and green alike (Okabe and Ito), as BGR.
 const std::array<cv::Scalar, 8> branch_colors = {
     cv::Scalar(178, 114, 0),  cv::Scalar(0, 94, 213),    cv::Scalar(115, 158, 0),  cv::Scalar(167, 121, 204),
     cv::Scalar(0, 159, 230),  cv::Scalar(233, 180, 86),  cv::Scalar(50, 190, 200), cv::Scalar(90, 90, 90)};
 
-// A square of 0 to 90 degrees on both axes.
-struct Axes {
-    cv::Rect area;
-
-    cv::Point at(double x_deg, double y_deg) const
-    {
-        return {cvRound(area.x + area.width * x_deg / 90), cvRound(area.y + area.height * (1 - y_deg / 90))};
-    }
-
-    void draw(cv::Mat &plot) const
-    {
-        for (int tick = 0; tick <= 90; tick += 15) {
-            cv::line(plot, at(tick, 0), at(tick, 90), faint, 1);
-            cv::line(plot, at(0, tick), at(90, tick), faint, 1);
-            const std::string label = std::to_string(tick);
-            const int width = cv::getTextSize(label, font, 0.42, 1, nullptr).width;
-            put_text(plot, label, at(tick, 0) + cv::Point(-width / 2, 18), 0.42, ink);
-            put_text(plot, label, at(0, tick) + cv::Point(-width - 6, 5), 0.42, ink);
-        }
-        cv::rectangle(plot, area, ink, 1, cv::LINE_AA);
-        put_text(plot, "slant 1, degrees", at(90, 0) + cv::Point(-130, 36), 0.45, ink);
-        put_text(plot, "f(slant 1), degrees", at(0, 90) + cv::Point(-28, -10), 0.45, ink);
-    }
-};
-
 void draw_curve(cv::Mat &plot, const Axes &axes, const ofc_solution &solution, int branch)
 {
     constexpr int samples = 1441;
-    std::array<double, samples> sigma, value;
-    if (ofc_slant_curve_sample(solution.tilts.tilt_rad, solution.ellipsoid.cosines, branch, samples, sigma.data(),
-                               value.data()) != OFC_STATUS_OK)
+    std::vector<cv::Vec3d> slants(samples);
+    std::vector<double> f(samples);
+    if (ofc_slant_curve_sample(solution.tilts.tilt_rad, solution.ellipsoid.cosines, branch, samples, slants[0].val,
+                               f.data()) != OFC_STATUS_OK)
         return;
     for (int i = 1; i < samples; i++) {
-        const double from = degrees(value[i - 1]), to = degrees(value[i]);
+        const double from = degrees(f[i - 1]), to = degrees(f[i]);
         const bool in_view = from >= 0 && from <= 90 && to >= 0 && to <= 90; // false for NaN: no value there
         if (in_view && std::abs(to - from) < 20)
-            cv::line(plot, axes.at(degrees(sigma[i - 1]), from), axes.at(degrees(sigma[i]), to),
+            cv::line(plot, axes.at(degrees(slants[i - 1][0]), from), axes.at(degrees(slants[i][0]), to),
                      branch_colors[branch - 1], 2, cv::LINE_AA);
     }
 }
 
 void mark(cv::Mat &plot, cv::Point at, const std::string &label, bool chosen)
 {
-    cv::circle(plot, at, 7, paper, cv::FILLED, cv::LINE_AA);
+    cv::circle(plot, at, 7, white, cv::FILLED, cv::LINE_AA);
     cv::circle(plot, at, 7, chosen ? red : ink, 2, cv::LINE_AA);
     put_text(plot, label, at + cv::Point(10, 18), chosen ? 0.7 : 0.45, chosen ? red : ink);
 }
@@ -111,13 +89,12 @@ std::vector<std::vector<cv::Vec3d>> wireframe(const ofc_ellipsoid &ellipsoid)
 
 } // namespace
 
-cv::Mat plot_curves(const Result &result, cv::Size size)
+cv::Mat plot_curves(const ofc_solution &s, cv::Size size)
 {
-    cv::Mat plot(size, CV_8UC3, paper);
-    const ofc_solution &s = result.solution;
+    cv::Mat plot(size, CV_8UC3, white);
     const int side = std::min(size.width - 130, size.height - 76);
-    const Axes axes{cv::Rect(44, 32, side, side)};
-    axes.draw(plot);
+    const Axes axes{cv::Rect(44, 32, side, side), {0, 90}, {0, 90}, "slant 1, degrees", "f(slant 1), degrees"};
+    axes.draw(plot, 15, 15);
     cv::line(plot, axes.at(0, 0), axes.at(90, 90), gray, 1, cv::LINE_AA);
     for (int branch = 1; branch <= 8; branch++) {
         draw_curve(plot, axes, s, branch);
@@ -134,15 +111,14 @@ cv::Mat plot_curves(const Result &result, cv::Size size)
     const double sigma = degrees(s.slant_rad[0]);
     if (s.slant_source == OFC_SLANTS_ROOT)
         mark(plot, axes.at(sigma, sigma), "S", true);
-    else if (s.slant_source == OFC_SLANTS_LEAST_SQUARES)
-        mark(plot, axes.at(sigma, sigma), "no root: least squares", true);
+    else if (s.slant_source != OFC_SLANTS_NONE)
+        mark(plot, axes.at(sigma, sigma), "no root", true);
     return plot;
 }
 
-cv::Mat plot_colors(const Picture &picture, const Result &result, cv::Size size)
+cv::Mat plot_colors(const Picture &picture, const ofc_solution &s, const cv::Mat &inliers, cv::Size size)
 {
-    cv::Mat plot(size, CV_8UC3, paper);
-    const ofc_solution &s = result.solution;
+    cv::Mat plot(size, CV_8UC3, white);
     std::vector<std::vector<cv::Vec3d>> lines;
     if (s.ellipsoid.norms[0] > 0)
         lines = wireframe(s.ellipsoid);
@@ -163,13 +139,8 @@ cv::Mat plot_colors(const Picture &picture, const Result &result, cv::Size size)
     }
 
     // Colors in pixel values: a Mat of r, g, b floats whatever the format.
-    std::vector<cv::Mat> bgr;
-    if (picture.green.empty())
-        cv::split(picture.pixels, bgr);
-    else
-        bgr = {picture.blue, picture.green, picture.pixels};
     cv::Mat colors;
-    cv::merge(std::vector<cv::Mat>{bgr[2], bgr[1], bgr[0]}, colors);
+    cv::merge(std::vector<cv::Mat>{picture.channel(0), picture.channel(1), picture.channel(2)}, colors);
     colors.convertTo(colors, CV_32FC3);
     const double pixels = static_cast<double>(colors.total());
     const int step = std::max(1, cvRound(std::sqrt(pixels / 60000)));
@@ -178,7 +149,7 @@ cv::Mat plot_colors(const Picture &picture, const Result &result, cv::Size size)
             for (int x = 0; x < colors.cols; x += step) {
                 const cv::Vec3d rho = colors.at<cv::Vec3f>(y, x);
                 const bool masked = !picture.mask.empty() && picture.mask.at<uchar>(y, x) == 0;
-                if (masked || rho == cv::Vec3d() || (result.inliers.at<uchar>(y, x) != 0) != inlier)
+                if (masked || rho == cv::Vec3d() || (inliers.at<uchar>(y, x) != 0) != inlier)
                     continue;
                 cv::circle(plot, view.at(rho), 1, inlier ? cv::Scalar(178, 114, 0) : cv::Scalar(0, 94, 213), cv::FILLED,
                            cv::LINE_AA);

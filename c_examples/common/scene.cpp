@@ -1,7 +1,8 @@
-#include "photo/scene.hpp"
+#include "common/scene.hpp"
 
 #include <array>
 #include <cmath>
+#include <opencv2/imgcodecs.hpp>
 
 namespace {
 
@@ -45,7 +46,7 @@ double face(double u, double v)
            0.035 * gaussian(u, v, 0, -0.16, 0.08, 0.06); // chin
 }
 
-double bust(double u, double v)
+double bust_height(double u, double v)
 {
     const double locks = blend(ellipsoid(u, v, -0.37, 0.16, 0.16, 0.34, 0.17),
                                ellipsoid(u, v, 0.37, 0.16, 0.16, 0.34, 0.17), 0.02);
@@ -61,50 +62,78 @@ double bust(double u, double v)
 
 } // namespace
 
-Scene render_scene()
+ofc_depth_map Relief::view() const
 {
-    const cv::Size size(420, 440);
-    const double half = 0.5 * size.width;
-    cv::Mat depth(size, CV_32F), mask(size, CV_8U);
-    for (int row = 0; row < size.height; row++)
-        for (int column = 0; column < size.width; column++) {
-            const double u = (column + 0.5) / half - 1, v = 1 - (row + 0.5) / half;
-            const double z = bust(u, v);
-            depth.at<float>(row, column) = static_cast<float>(z * half);
-            mask.at<uchar>(row, column) = z > 0 ? 255 : 0;
-        }
-
-    // Table 1's lights: slant and tilt in degrees, and their colors as columns of B.
-    const double degrees = CV_PI / 180;
-    const double angles[3][2] = {{60, 20}, {40, 160}, {50, -110}};
-    const std::array<double, 9> colors = {59, 13, 55, 7, 51, 49, 32, 43, 40};
-    std::array<double, 9> directions;
-    for (int light = 0; light < 3; light++) {
-        const double slant = angles[light][0] * degrees, tilt = angles[light][1] * degrees;
-        directions[3 * light] = std::sin(slant) * std::cos(tilt);
-        directions[3 * light + 1] = std::sin(slant) * std::sin(tilt);
-        directions[3 * light + 2] = std::cos(slant);
-    }
-
     ofc_depth_map map = {};
     map.depth = depth.ptr<float>();
     map.width = depth.cols;
     map.height = depth.rows;
     map.row_stride_bytes = depth.step;
-    map.pixel_pitch = 1;
+    map.pixel_pitch = pixel_pitch;
     map.mask = mask.data;
     map.mask_stride_bytes = mask.step;
+    return map;
+}
+
+Relief bust()
+{
+    const cv::Size size(420, 440);
+    const double half = 0.5 * size.width;
+    Relief relief;
+    relief.depth.create(size, CV_32F);
+    relief.mask.create(size, CV_8U);
+    for (int row = 0; row < size.height; row++)
+        for (int column = 0; column < size.width; column++) {
+            const double u = (column + 0.5) / half - 1, v = 1 - (row + 0.5) / half;
+            const double z = bust_height(u, v);
+            relief.depth.at<float>(row, column) = static_cast<float>(z * half);
+            relief.mask.at<uchar>(row, column) = z > 0 ? 255 : 0;
+        }
+    return relief;
+}
+
+Relief read_relief(const std::string &path, double pixel_pitch)
+{
+    const cv::Mat image = read_image(path, cv::IMREAD_UNCHANGED);
+    Relief relief;
+    relief.pixel_pitch = pixel_pitch;
+    if (image.type() == CV_16UC1)
+        relief.mask = image > 0;
+    else if (image.type() == CV_32FC1)
+        relief.mask = cv::abs(image) < HUGE_VAL; // false for NaN
+    else
+        throw UsageError(path + " is neither a gray picture of 16 bits nor a TIFF of one 32-bit float a pixel");
+    image.convertTo(relief.depth, CV_32F);
+    return relief;
+}
+
+Scene render(const Relief &relief, double noise, std::uint64_t seed)
+{
+    // Table 1's lights: slant and tilt in degrees, and their colors as columns of B. The paper prints 50 for the last
+    // number; 40 is what reproduces its Table 1.
+    const double angles[3][2] = {{60, 20}, {40, 160}, {50, -110}};
+    const std::array<double, 9> colors = {59, 13, 55, 7, 51, 49, 32, 43, 40};
+    std::array<double, 9> directions;
+    for (int light = 0; light < 3; light++) {
+        const double slant = angles[light][0] * CV_PI / 180, tilt = angles[light][1] * CV_PI / 180;
+        directions[3 * light] = std::sin(slant) * std::cos(tilt);
+        directions[3 * light + 1] = std::sin(slant) * std::sin(tilt);
+        directions[3 * light + 2] = std::cos(slant);
+    }
     ofc_lights lights = {};
     lights.directions = directions.data();
     lights.colors = colors.data();
     lights.count = 3;
     ofc_render_params params;
     ofc_render_params_default(&params);
-    params.noise = 1;
+    params.noise = noise;
+    params.seed = seed;
 
     Scene scene;
-    scene.picture.pixels.create(size, CV_8UC3);
-    scene.normals.create(size, CV_32FC3);
+    scene.picture.pixels.create(relief.depth.size(), CV_8UC3);
+    scene.picture.mask = relief.mask;
+    scene.normals.create(relief.depth.size(), CV_32FC3);
+    const ofc_depth_map map = relief.view();
     ofc_rendering rendering;
     const ofc_status status =
         ofc_render(&map, &lights, &params, scene.picture.pixels.data, OFC_PIXEL_BGR8, scene.picture.pixels.step,

@@ -1,0 +1,136 @@
+#include "table1/experiment.hpp"
+
+#include <cmath>
+
+namespace {
+
+// A workspace of so many bytes, aligned for any call.
+std::vector<std::uint64_t> workspace_of(std::size_t bytes)
+{
+    return std::vector<std::uint64_t>(bytes / sizeof(std::uint64_t) + 1);
+}
+
+ofc_status solve(const ofc_image &image, const ofc_solve_params &params, cv::Mat *inliers, ofc_solution &solution)
+{
+    const std::size_t bytes = ofc_solve_workspace_size(image.width, image.height, &params);
+    std::vector<std::uint64_t> workspace = workspace_of(bytes);
+    return ofc_solve(&image, &params, workspace.data(), bytes, inliers ? inliers->data : nullptr, &solution);
+}
+
+// Unit normals of the inliers by a matrix (F^-1, or the root of C).
+cv::Mat normals_by(const ofc_image &image, const ofc_inliers &inliers, const double *matrix)
+{
+    cv::Mat normals = cv::Mat::zeros(image.height, image.width, CV_32FC3);
+    ofc_normals_from_matrix(&image, &inliers, matrix, OFC_LENGTH_UNIT, normals.ptr<float>(), normals.step);
+    return normals;
+}
+
+Answer answer(const std::string &name, const cv::Mat &normals, const cv::Mat &truth)
+{
+    return {name, normals, median_angle_deg(normals, truth), ""};
+}
+
+Answer refusal(const std::string &name, ofc_status status)
+{
+    return {name, cv::Mat(), std::nullopt, ofc_status_message(status)};
+}
+
+// The orthogonal matrix that turns `from` into `to` best in the least-squares sense (Procrustes), applied.
+cv::Mat turned_to(const cv::Mat &from, const cv::Mat &to)
+{
+    cv::Matx33d sum = cv::Matx33d::zeros();
+    for (int y = 0; y < from.rows; y++)
+        for (int x = 0; x < from.cols; x++) {
+            const cv::Vec3d n = from.at<cv::Vec3f>(y, x), t = to.at<cv::Vec3f>(y, x);
+            sum += t * n.t(); // zero where either has no normal
+        }
+    const cv::SVD svd(cv::Mat(sum), cv::SVD::FULL_UV);
+    const cv::Mat best = svd.u * svd.vt;
+    cv::Mat turned;
+    cv::transform(from, turned, best);
+    return turned;
+}
+
+// Fig. 4(b): the integral along the branch of the solution, slants 2 and 3 by one iteration of eqs. 25.
+std::vector<cv::Vec2d> along_branch(const ofc_image &image, const ofc_solution &s)
+{
+    std::vector<cv::Vec2d> points;
+    if (s.slant_source != OFC_SLANTS_ROOT)
+        return points;
+    constexpr int samples = 181;
+    std::vector<cv::Vec3d> slants(samples);
+    std::vector<double> f(samples);
+    ofc_slant_curve_sample(s.tilts.tilt_rad, s.ellipsoid.cosines, s.candidates[s.chosen].branch, samples, slants[0].val,
+                           f.data());
+    for (const cv::Vec3d &slant : slants) {
+        ofc_orientation orientation;
+        ofc_integrability integral;
+        if (ofc_orientation_compose(s.ellipsoid.norms, s.tilts.tilt_rad, slant.val, 1e-3, &orientation) == OFC_STATUS_OK &&
+            orientation.rank == 3 &&
+            ofc_integrability_integral(&image, &s.inliers, orientation.f_inverse, &integral) == OFC_STATUS_OK &&
+            integral.mean > 0)
+            points.emplace_back(degrees(slant[0]), std::log10(integral.mean));
+    }
+    return points;
+}
+
+} // namespace
+
+Experiment run_experiment(const Relief &relief, double noise, std::uint64_t seed)
+{
+    Experiment e;
+    e.scene = render(relief, noise, seed);
+    const cv::Mat &truth = e.scene.normals;
+    const ofc_image image = e.scene.picture.view();
+    e.inliers = cv::Mat::zeros(truth.size(), CV_8U);
+    ofc_solve_params params;
+    ofc_solve_params_default(&params);
+    params.lmeds.seed = seed;
+    ofc_solution &s = e.solution;
+    e.status = solve(image, params, &e.inliers, s);
+    if (e.status != OFC_STATUS_OK)
+        return e;
+
+    const Directions correct = directions_of(e.scene.f);
+    ofc_solution given = {};
+    params.tilt_estimator = OFC_TILT_GIVEN;
+    std::copy(correct.tilts.begin(), correct.tilts.end(), params.tilt_rad);
+    const ofc_status with_tilts = solve(image, params, nullptr, given);
+    const Estimates estimates = estimates_of(image, s.inliers);
+    const auto triple = [](const double *values) { return Triple{values[0], values[1], values[2]}; };
+    e.table.angles("tilt", "correct", correct.tilts);
+    e.table.angles("tilt", "Pentland", triple(s.tilts.tilt_rad));
+    e.table.angles("slant", "correct", correct.slants);
+    e.table.angles("slant", "OFC", triple(s.slant_rad));
+    e.table.angles("slant", "OFC (correct tilts)", triple(given.slant_rad));
+    e.table.angles("slant", "Pentland", estimates.pentland_slants);
+    e.table.angles("slant", "Lee-Rosenfeld", estimates.lee_rosenfeld_slants);
+    e.table.angles("slant", "Zheng-Chellappa", estimates.zheng_chellappa_slants);
+    e.table.numbers("norm", "correct", correct.norms);
+    e.table.numbers("norm", "OFC", triple(s.ellipsoid.norms));
+    e.table.numbers("norm", "channel maxima", estimates.channel_maxima);
+
+    e.answers.push_back(answer("OFC", normals_by(image, s.inliers, s.orientation.f_inverse), truth));
+    e.answers.push_back(with_tilts == OFC_STATUS_OK
+                            ? answer("OFC (correct tilts)", normals_by(image, s.inliers, given.orientation.f_inverse), truth)
+                            : refusal("OFC (correct tilts)", with_tilts));
+    ofc_annealing_params annealing;
+    ofc_annealing_params_default(&annealing);
+    annealing.seed = seed;
+    const std::size_t bytes = ofc_orthogonal_annealing_workspace_size(image.width, image.height, &annealing);
+    std::vector<std::uint64_t> workspace = workspace_of(bytes);
+    ofc_orthogonal found;
+    const auto minimum = [&](const std::string &name, ofc_status status) {
+        e.answers.push_back(status == OFC_STATUS_OK
+                                ? answer(name, normals_by(image, s.inliers, found.chosen.f_inverse), truth)
+                                : refusal(name, status));
+    };
+    minimum("least integral (15), by annealing",
+            ofc_orthogonal_annealing(&image, &s.inliers, s.ellipsoid.root, correct.tilts.data(), &annealing,
+                                     workspace.data(), bytes, &found));
+    minimum("least integral (15), closed form",
+            ofc_orthogonal_closed_form(&image, &s.inliers, s.ellipsoid.root, correct.tilts.data(), 60, &found));
+    e.answers.push_back(answer("best orthogonal matrix", turned_to(normals_by(image, s.inliers, s.ellipsoid.root), truth), truth));
+    e.branch = along_branch(image, s);
+    return e;
+}

@@ -1,0 +1,31 @@
+// Section 4: a range map under three lights, and what every method makes of its picture.
+#pragma once
+
+#include "common/estimates.hpp"
+#include "common/scene.hpp"
+
+#include <optional>
+
+// One way to normals, and how far they are from the truth.
+struct Answer {
+    std::string name;
+    cv::Mat normals; // CV_32FC3 over the inliers, empty where the method has no answer
+    std::optional<double> median_deg;
+    std::string refusal;
+};
+
+struct Experiment {
+    Scene scene;
+    ofc_status status = OFC_STATUS_OK;
+    ofc_solution solution = {}; // with Pentland's tilts
+    cv::Mat inliers;            // CV_8U
+    Table table;
+    // Estimated tilts, correct tilts, the best rotation from (15), the closed form, the best orthogonal matrix.
+    std::vector<Answer> answers;
+    // log10 of the integral (15) over the first slant in degrees, along the solution's branch.
+    std::vector<cv::Vec2d> branch;
+
+    bool solved() const { return status == OFC_STATUS_OK; }
+};
+
+Experiment run_experiment(const Relief &relief, double noise, std::uint64_t seed);
