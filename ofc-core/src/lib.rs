@@ -18,6 +18,7 @@ pub mod ellipsoid;
 pub mod image;
 pub mod inliers;
 pub mod integrability;
+pub mod joint;
 pub mod lmeds;
 pub mod location;
 pub mod mat3;

@@ -1,0 +1,149 @@
+//! The orthogonal transformation from all that the normals say about it: how they point outward, and that they are those
+//! of one surface. The sums need no second look at the picture, so any number of candidates costs nothing.
+//!
+//! With N = G0 rho the normals up to a member of O(3), n = (r1.N, r2.N, r3.N), three kinds of evidence are weighed against
+//! each other, each by an uncertainty estimated from the picture itself:
+//!
+//! - *Integrability.* For a surface, `n3 n1_y - n1 n3_y = n3 n2_x - n2 n3_x`, which is linear in the first two rows,
+//!   `r1.(N x N_x) + r2.(N x N_y) = 0`: the condition of the parent's `orthogonal`, but on N and its gradients fitted to windows of
+//!   8 to 64 pixels, without what noise adds to the squares, and with less weight where it fails ([`integrable`]).
+//! - *Outward normals.* On the whole a normal points away from the middle of its surface: the slopes of N over position
+//!   are to be along x and y. Pentland's tilts say the same of mean gradients, which only the border of the surface
+//!   decides; regression listens to all of it. Both are used ([`outward`]).
+//!
+//! (r1, r2) -> -(r1, r2), the convex/concave twin, changes nothing in the first. The sign of `sum (x n1 + y n2) / n3`
+//! over the surface chooses: normals that point outward make a dome.
+//!
+//! # Reference
+//! Sections 2.3-2.4 (eqs. 13-15) and 3.2 (eqs. 20-21), which this combines.
+
+mod cells;
+mod dome;
+mod form;
+mod integrable;
+mod outward;
+mod search;
+
+use crate::image::{Image, Window};
+use crate::mat3::{self, Mat3};
+use cells::Cells;
+use integrable::Integrable;
+use outward::Outward;
+
+/// Which evidence decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evidence {
+    /// More than three quarters of the information are the outward normals'.
+    Outward,
+    /// More than three quarters are integrability's.
+    Integrability,
+    /// Neither.
+    Both,
+}
+
+/// The transformation, and how sure it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joint {
+    /// r1, r2, r3: n = `rows` G0 rho. Its determinant is 1 or -1.
+    pub rows: Mat3,
+    /// Covariance of the small rotation, a vector in the frame of n, by which `rows` may be wrong; radians squared.
+    pub covariance: Mat3,
+    /// What decided.
+    pub evidence: Evidence,
+    /// From 0 (dome and hollow fit alike) to 1 (all of the surface is a dome): how clear the choice between the twins is.
+    pub dome: f64,
+    /// How much less likely the best of the candidates that are more than [`APART`] away is: the difference of the two
+    /// negative log likelihoods; infinite where there is none.
+    pub second_best: f64,
+}
+
+/// Candidates less than this far apart, in radians, are one.
+pub const APART: f64 = 0.2;
+
+/// Square windows of so many pixels, smallest first.
+const WINDOW_SIZES: [usize; 4] = [8, 16, 32, 64];
+
+/// How many `f32` [`estimate`] needs for a picture of this size: at most two a pixel.
+#[must_use]
+pub const fn workspace_len(width: usize, height: usize) -> usize {
+    cells::count(width, height).saturating_mul(cells::NUMBERS + integrable::NUMBERS)
+}
+
+/// The transformation of the normals `root` rho of the pixels that `inliers` gives the bits of; `None` where they are too
+/// few or too scattered to say anything.
+///
+/// # Units
+/// `root` in (pixel value)^-1.
+///
+/// # Scratch
+/// [`workspace_len`] `f32`; what they hold before does not matter. One pass over the picture, and one over a quarter of it.
+pub fn estimate(
+    image: &Image,
+    inliers: impl Fn(&Window) -> u64,
+    root: &Mat3,
+    workspace: &mut [f32],
+) -> Option<Joint> {
+    let (store, rest) = workspace.split_at_mut_checked(cells::len(image.width(), image.height()))?;
+    let mut cells = Cells::of(image, &inliers, root, store, rest);
+    let outward = Outward::of(&cells)?;
+    let noise = cells.noise(rest)?;
+
+    let prior = |rows: &Mat3| outward.cost(rows);
+    let mut best = search::minimum(&search::starts(), prior);
+    let mut chosen: Option<(Integrable, Mat3, f64)> = None;
+    for _ in WINDOW_SIZES {
+        if let Some((form, rows)) = Integrable::of(&cells, &noise, &outward, best.rows, rest) {
+            let information = search::hessian(&rows, |rows| form.cost(rows) + prior(rows));
+            let spread = trace(&inverse(&information, 1.0 / LARGEST_VARIANCE));
+            if chosen.as_ref().is_none_or(|(.., least)| spread < *least) {
+                chosen = Some((form, rows, spread));
+            }
+        }
+        if !cells.merge() {
+            break;
+        }
+    }
+
+    let form = chosen.as_ref().map(|(form, ..)| form);
+    let cost = |rows: &Mat3| prior(rows) + form.map_or(0.0, |form| form.cost(rows));
+    let mut starts = search::starts();
+    starts[0] = best.rows;
+    if let Some((_, rows, _)) = &chosen {
+        starts[1] = *rows;
+    }
+    best = search::minimum(&starts, cost);
+    let information = search::hessian(&best.rows, cost);
+    let covariance = inverse(&information, 1.0 / LARGEST_VARIANCE);
+    let shared = trace(&mat3::multiply(&covariance, &search::hessian(&best.rows, prior))) / 3.0;
+    let evidence = match shared {
+        share if share > 0.75 => Evidence::Outward,
+        share if share < 0.25 => Evidence::Integrability,
+        _ => Evidence::Both,
+    };
+    let rows = outward.facing(best.rows);
+    let (rows, dome) = dome::convex(image, inliers, root, rows, outward.middle);
+    Some(Joint { rows, covariance, evidence, dome, second_best: best.second })
+}
+
+fn trace(a: &Mat3) -> f64 {
+    let [[a, ..], [_, b, _], [.., c]] = *a;
+    a + b + c
+}
+
+/// No rotation is more uncertain than this, in radians squared.
+const LARGEST_VARIANCE: f64 = 3.0;
+
+/// The inverse of a positive semidefinite matrix whose eigenvalues below `least` are taken for that.
+fn inverse(a: &Mat3, least: f64) -> Mat3 {
+    let eigen = mat3::symmetric_eigen(a);
+    let mut inverse = [[0.0; 3]; 3];
+    for (value, vector) in eigen.values.into_iter().zip(eigen.vectors) {
+        let reciprocal = 1.0 / value.max(least);
+        for (row, x) in inverse.iter_mut().zip(vector) {
+            for (entry, y) in row.iter_mut().zip(vector) {
+                *entry += reciprocal * x * y;
+            }
+        }
+    }
+    inverse
+}

@@ -1,0 +1,191 @@
+//! Normals point outward: how N changes with position, as a whole, is to be along x and y.
+//!
+//! For a sphere the slopes of n over x and y are (1, 0, 0) and (0, 1, 0) over its radius. For other closed surfaces they
+//! are so on the whole, as far as the surface is round; how far that is, the parts of the picture tell by how much each of
+//! them matters. Slopes are taken twice: by regression over all inliers, and as the mean of the gradients of small cells,
+//! which the border alone decides and which Pentland's tilts are made of.
+
+use super::cells::{Cells, Moments, Plane, SIDE};
+use crate::mat3::{self, Mat3};
+
+/// The picture is cut into so many parts along each side.
+pub(super) const PARTS: usize = 4;
+
+/// Cells with fewer inliers than this, of 16, have no gradient of their own.
+const SMALLEST_COUNT: f64 = 10.0;
+
+/// The weight of the second kind of slopes: both look at the same surface.
+const SECOND: f64 = 0.5;
+
+/// Slopes of N over x and y, and the variance of their components.
+#[derive(Clone, Copy, Debug)]
+struct Slopes {
+    along: [[f64; 3]; 2],
+    variance: f64,
+}
+
+impl Slopes {
+    /// The mean of `values` with the variance of a jackknife over them, when `whole` is what all parts say together.
+    fn jackknife(whole: [[f64; 3]; 2], replicates: &[Option<[[f64; 3]; 2]>]) -> Option<Self> {
+        let used = replicates.iter().flatten().count();
+        if used < 2 {
+            return None;
+        }
+        let mut sum = 0.0;
+        for i in 0..6 {
+            let component = |slopes: &[[f64; 3]; 2]| slopes.as_flattened().get(i).copied().unwrap_or(0.0);
+            let values = || replicates.iter().flatten().map(component);
+            let mean = values().sum::<f64>() / used as f64;
+            sum += values().map(|value| (value - mean) * (value - mean)).sum::<f64>();
+        }
+        let variance = sum * (used - 1) as f64 / used as f64 / 6.0;
+        let size: f64 = whole.as_flattened().iter().map(|value| value * value).sum();
+        // Nothing is more certain than this.
+        Some(Self { along: whole, variance: variance.max(1e-6 * size) })
+    }
+
+    /// The negative log likelihood that slopes in the frame of `rows` are kappa (1, 0, 0) and kappa (0, 1, 0), kappa > 0.
+    fn cost(&self, rows: &Mat3) -> f64 {
+        let [x, y] = self.along.map(|slope| mat3::apply(rows, slope));
+        let ([a, b, c], [d, e, f]) = (x, y);
+        let kappa = (0.5 * (a + e)).max(0.0);
+        let rest = [a - kappa, b, c, d, e - kappa, f];
+        if self.variance > 0.0 { 0.5 * rest.iter().map(|v| v * v).sum::<f64>() / self.variance } else { 0.0 }
+    }
+}
+
+/// All that positions say.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outward {
+    regression: Slopes,
+    mean: Slopes,
+    /// The sum of N.
+    normal: [f64; 3],
+    /// The mean position in pixels, x right and y up from the top left pixel.
+    pub middle: [f64; 2],
+}
+
+/// The parts of a picture: where the inliers lie, cut into [`PARTS`] by [`PARTS`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parts {
+    from: [f64; 2],
+    size: [f64; 2],
+}
+
+impl Parts {
+    /// Around all cells that hold an inlier; `None` where none does.
+    pub fn around(cells: &Cells) -> Option<Self> {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let [width, height] = cells.size();
+        for y in 0..height {
+            for x in 0..width {
+                if cells.at(x, y).count() > 0.0 {
+                    for ((low, high), at) in low.iter_mut().zip(&mut high).zip(cells.middle(x, y)) {
+                        *low = low.min(at);
+                        *high = high.max(at);
+                    }
+                }
+            }
+        }
+        let ([x0, y0], [x1, y1]) = (low, high);
+        (x1 >= x0).then_some(Self { from: low, size: [x1 - x0 + 1.0, y1 - y0 + 1.0] })
+    }
+
+    /// The part that a position lies in.
+    pub fn of(&self, [x, y]: [f64; 2]) -> usize {
+        let ([x0, y0], [width, height]) = (self.from, self.size);
+        let index = |at: f64, from: f64, size: f64| {
+            // Positions inside are in range; others count for the part at the border.
+            ((PARTS as f64 * (at - from) / size).max(0.0) as usize).min(PARTS - 1)
+        };
+        index(y, y0, height) * PARTS + index(x, x0, width)
+    }
+
+    fn middle(&self) -> [f64; 2] {
+        let ([x0, y0], [width, height]) = (self.from, self.size);
+        [x0 + 0.5 * width, y0 + 0.5 * height]
+    }
+}
+
+impl Outward {
+    /// From the smallest cells; `None` where there are too few.
+    pub fn of(cells: &Cells) -> Option<Self> {
+        debug_assert!(cells.side() == SIDE);
+        let parts = Parts::around(cells)?;
+        let [x0, y0] = parts.middle();
+        let mut moments = [Moments::default(); PARTS * PARTS];
+        let mut gradients = [([[0.0; 3]; 2], 0.0); PARTS * PARTS];
+        let [width, height] = cells.size();
+        for y in 0..height {
+            for x in 0..width {
+                let cell = cells.at(x, y);
+                let at = cells.middle(x, y);
+                let part = parts.of(at);
+                let [right, up] = at;
+                if let Some(sums) = moments.get_mut(part) {
+                    sums.add(&cell, right - x0, up - y0);
+                }
+                if cell.count() >= SMALLEST_COUNT
+                    && let Some(Plane { gradient, .. }) = cell.plane()
+                    && let Some((sums, weight)) = gradients.get_mut(part)
+                {
+                    for (sum, value) in sums.as_flattened_mut().iter_mut().zip(gradient.as_flattened()) {
+                        *sum += cell.count() * value;
+                    }
+                    *weight += cell.count();
+                }
+            }
+        }
+        let total = all_but(&moments, PARTS * PARTS);
+        let mut left_out = [None; PARTS * PARTS];
+        for (i, (slot, part)) in left_out.iter_mut().zip(&moments).enumerate() {
+            if part.count() > 0.0 {
+                *slot = all_but(&moments, i).plane().map(|plane| plane.gradient);
+            }
+        }
+        let regression = Slopes::jackknife(total.plane()?.gradient, &left_out)?;
+        let mut left_out = [None; PARTS * PARTS];
+        for (i, (slot, (_, weight))) in left_out.iter_mut().zip(&gradients).enumerate() {
+            if *weight > 0.0 {
+                *slot = mean_but(&gradients, i);
+            }
+        }
+        let mean = Slopes::jackknife(mean_but(&gradients, PARTS * PARTS)?, &left_out)?;
+        let [n, x, y, ..] = total.position;
+        Some(Self { regression, mean, normal: total.normal, middle: [x0 + x / n, y0 + y / n] })
+    }
+
+    /// The negative log likelihood of `rows`.
+    pub fn cost(&self, rows: &Mat3) -> f64 {
+        self.regression.cost(rows) + SECOND * self.mean.cost(rows)
+    }
+
+    /// `rows` with the sign of r3 that lets the surface face the camera.
+    pub fn facing(&self, [r1, r2, r3]: Mat3) -> Mat3 {
+        [r1, r2, if mat3::dot(r3, self.normal) < 0.0 { mat3::scale(r3, -1.0) } else { r3 }]
+    }
+}
+
+/// The sums over all parts but one.
+fn all_but(parts: &[Moments], left_out: usize) -> Moments {
+    let mut total = Moments::default();
+    for (i, part) in parts.iter().enumerate() {
+        if i != left_out {
+            total.add(part, 0.0, 0.0);
+        }
+    }
+    total
+}
+
+/// The mean over all parts but one.
+fn mean_but(parts: &[([[f64; 3]; 2], f64)], left_out: usize) -> Option<[[f64; 3]; 2]> {
+    let (mut mean, mut weights) = ([[0.0; 3]; 2], 0.0);
+    for (_, (sums, weight)) in parts.iter().enumerate().filter(|(i, _)| *i != left_out) {
+        for (entry, sum) in mean.as_flattened_mut().iter_mut().zip(sums.as_flattened()) {
+            *entry += sum;
+        }
+        weights += weight;
+    }
+    mean.as_flattened_mut().iter_mut().for_each(|entry| *entry /= weights);
+    (weights > 0.0).then_some(mean)
+}
