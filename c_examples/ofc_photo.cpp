@@ -122,6 +122,7 @@ int run(const Options &options)
     ofc_solve_params_default(&params);
     params.lmeds.seed = options.seed.value_or(params.lmeds.seed);
     params.lmeds.subsets = options.subsets.value_or(params.lmeds.subsets);
+    params.road = options.paper_road ? OFC_ROAD_PAPER : OFC_ROAD_JOINT;
     params.lmeds.method = options.least_squares ? OFC_FIT_LEAST_SQUARES : OFC_FIT_LEAST_MEDIAN;
     Result result = solve(picture, params);
     result.true_f = true_f;

@@ -198,6 +198,28 @@
 // There is no root: Zheng and Chellappa's slants.
 #define OFC_SLANTS_ZHENG_CHELLAPPA 6
 
+// F was oriented as a whole (OFC_ROAD_JOINT): its slants follow from it.
+#define OFC_SLANTS_JOINT 7
+
+// From integrability on windows of several sizes and from normals that point outward, each as far as it can be trusted
+// in this picture.
+#define OFC_ROAD_JOINT 0
+
+// The paper's: slants from tilts (section 3). Good on closed convex shapes, poor on relief that touches the frame.
+#define OFC_ROAD_PAPER 1
+
+// Tilts, on the paper's road: nothing is known of how sure they are.
+#define OFC_EVIDENCE_TILTS_ALONE 0
+
+// Mostly that normals point outward, which is what tilts rest on.
+#define OFC_EVIDENCE_OUTWARD 1
+
+// Mostly integrability.
+#define OFC_EVIDENCE_INTEGRABILITY 2
+
+// Both.
+#define OFC_EVIDENCE_BOTH 3
+
 // Return OFC_STATUS_NO_CONSISTENT_SLANTS.
 #define OFC_FALLBACK_REFUSE 0
 
@@ -456,6 +478,28 @@ typedef struct ofc_tilts {
     double mean_gradient[6];
 } ofc_tilts;
 
+// What decided the orientation: one of OFC_EVIDENCE_*.
+typedef int32_t ofc_evidence;
+
+// How sure the orientation of F is; all zero on the paper's road. Errors of C, which turn and bend normals as well, come on
+// top of it.
+typedef struct ofc_confidence {
+    // Covariance of the small rotation, a vector in the frame of the normals, by which all of them may be turned; radians
+    // squared, row-major.
+    double covariance[9];
+    // The root mean square angle by which a normal is expected to be turned, in radians.
+    double error_rad;
+    // Convex or concave: from 0 (the surface is as much a dome as a hollow) to 1 (all of it is a dome).
+    double dome;
+    // How much less likely the next best orientation elsewhere is, as a difference of log likelihoods; infinite where there
+    // is none.
+    double second_best;
+    // What decided, one of OFC_EVIDENCE_*.
+    ofc_evidence evidence;
+    // Zero.
+    uint32_t reserved;
+} ofc_confidence;
+
 // Slants of the three channels' equivalent lights that are consistent with their tilts and angles.
 typedef struct ofc_slants {
     // From +z, in [0, pi/2].
@@ -514,9 +558,11 @@ typedef struct ofc_solution {
     struct ofc_ellipsoid ellipsoid;
     // Tilts of the rows of F.
     struct ofc_tilts tilts;
-    // Slants of the rows of F, from +z in [0, pi/2].
+    // Slants of the rows of F, from +z: in [0, pi/2] on the paper's road, in [0, pi] on the other.
     double slant_rad[3];
-    // All slants consistent with the tilts, by ascending first slant.
+    // How sure the orientation is.
+    struct ofc_confidence confidence;
+    // On the paper's road, all slants consistent with the tilts, by ascending first slant.
     struct ofc_slants candidates[OFC_MAX_CANDIDATES];
     // F and its inverse.
     struct ofc_orientation orientation;
@@ -879,6 +925,9 @@ typedef int32_t ofc_tilt_estimator;
 // What to do where eqs. 25 have no root: one of OFC_FALLBACK_*.
 typedef int32_t ofc_slant_fallback;
 
+// How the orthogonal transformation that the regression leaves open is found: one of OFC_ROAD_*.
+typedef int32_t ofc_road;
+
 // What ofc_solve() does. Set by ofc_solve_params_default().
 typedef struct ofc_solve_params {
     // The regression in color space, with the seed and the saturation level.
@@ -891,8 +940,11 @@ typedef struct ofc_solve_params {
     ofc_tilt_estimator tilt_estimator;
     // What to do where eqs. 25 have no root, one of OFC_FALLBACK_*. Default OFC_FALLBACK_LEAST_SQUARES.
     ofc_slant_fallback slant_fallback;
+    // How F is oriented, one of OFC_ROAD_*. Given tilts, and a picture that is too small for OFC_ROAD_JOINT, take the paper's
+    // road whatever this is; tilt_estimator and slant_fallback are for that road. Default OFC_ROAD_JOINT.
+    ofc_road road;
     // Must be zero.
-    uint32_t reserved[6];
+    uint32_t reserved[5];
 } ofc_solve_params;
 
 

@@ -109,7 +109,7 @@ cv::Mat plot_curves(const ofc_solution &s, cv::Size size)
             mark(plot, axes.at(sigma, sigma), std::to_string(s.candidates[i].branch), false);
     }
     const double sigma = degrees(s.slant_rad[0]);
-    if (s.slant_source == OFC_SLANTS_ROOT)
+    if (s.slant_source == OFC_SLANTS_ROOT || s.slant_source == OFC_SLANTS_JOINT)
         mark(plot, axes.at(sigma, sigma), "S", true);
     else if (s.slant_source != OFC_SLANTS_NONE)
         mark(plot, axes.at(sigma, sigma), "no root", true);

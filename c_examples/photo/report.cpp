@@ -29,6 +29,8 @@ const char *source_name(ofc_slant_source source)
         return "root of eqs. 25";
     case OFC_SLANTS_LEAST_SQUARES:
         return "least squares over eqs. 24 (eqs. 25 have no root)";
+    case OFC_SLANTS_JOINT:
+        return "F oriented as a whole";
     default:
         return "none";
     }
@@ -93,6 +95,29 @@ std::string text(const char *format, ...)
     return line;
 }
 
+// How far to trust the orientation, in plain words.
+std::string trust(const ofc_solution &s)
+{
+    const ofc_confidence &c = s.confidence;
+    const double error = degrees(c.error_rad);
+    if (c.evidence == OFC_EVIDENCE_TILTS_ALONE)
+        return "the orientation rests on tilts alone: good for closed convex shapes, not known how good for this one";
+    const char *level = error < 3 ? "trust the orientation" : error < 8 ? "trust the orientation roughly" : "do not rely on the orientation";
+    const char *evidence = c.evidence == OFC_EVIDENCE_OUTWARD         ? "from normals that point outward"
+                           : c.evidence == OFC_EVIDENCE_INTEGRABILITY ? "from integrability"
+                                                                      : "from integrability and normals that point outward";
+    const char *shape = c.dome > 0.5 ? "clearly convex" : c.dome > 0.15 ? "more convex than concave" : "convex or concave is a guess";
+    return text("%s: expected to be off by %.1f degrees, %s; %s", level, error, evidence, shape);
+}
+
+json confidence(const ofc_solution &s)
+{
+    static const char *const names[] = {"tilts alone", "outward normals", "integrability", "both"};
+    const ofc_confidence &c = s.confidence;
+    return {{"evidence", names[c.evidence]},       {"expected_error_deg", degrees(c.error_rad)}, {"dome", c.dome},
+            {"second_best", c.second_best},        {"covariance", matrix(c.covariance)},         {"in_words", trust(s)}};
+}
+
 } // namespace
 
 void write_report(const std::string &path, const Result &result)
@@ -124,6 +149,7 @@ void write_report(const std::string &path, const Result &result)
         {"tilt_deg", in_degrees(s.tilts.tilt_rad)},
         {"slant_deg", in_degrees(s.slant_rad)},
         {"slant_source", source_name(s.slant_source)},
+        {"confidence", confidence(s)},
         {"candidates", candidates(s)},
         {"F", matrix(s.orientation.f)},
         {"singular_values", s.orientation.singular_values},
@@ -167,8 +193,11 @@ std::vector<Line> summary(const Result &result)
     if (s.orientation.rank == 0)
         return lines;
     lines.back().text += text(", location of norms %.4f", s.norm_location.location);
-    lines.push_back({"slants", text("from a %s; %d candidate%s", source_name(s.slant_source), s.candidate_count,
-                                    s.candidate_count == 1 ? "" : "s")});
+    if (s.slant_source == OFC_SLANTS_JOINT)
+        lines.push_back({"trust", trust(s)});
+    else
+        lines.push_back({"slants", text("from a %s; %d candidate%s", source_name(s.slant_source), s.candidate_count,
+                                        s.candidate_count == 1 ? "" : "s")});
     for (int c = 0; c < 3; c++) {
         std::string line = text("tilt %7.2f  slant %5.2f  norm %6.1f", degrees(s.tilts.tilt_rad[c]),
                                 degrees(s.slant_rad[c]), s.ellipsoid.norms[c]);

@@ -28,6 +28,7 @@ use crate::image::{Image, Window};
 use crate::mat3::{self, Mat3};
 use cells::Cells;
 use integrable::Integrable;
+use libm::sqrt;
 use outward::Outward;
 
 /// Which evidence decided.
@@ -57,6 +58,14 @@ pub struct Joint {
     pub second_best: f64,
 }
 
+impl Joint {
+    /// The root mean square angle, over directions, by which normals are expected to be turned.
+    #[must_use]
+    pub fn expected_error(&self) -> f64 {
+        sqrt(2.0 / 3.0 * trace(&self.covariance))
+    }
+}
+
 /// Candidates less than this far apart, in radians, are one.
 pub const APART: f64 = 0.2;
 
@@ -83,6 +92,7 @@ pub fn estimate(
     root: &Mat3,
     workspace: &mut [f32],
 ) -> Option<Joint> {
+    let workspace = workspace.get_mut(..workspace_len(image.width(), image.height()))?;
     let (store, rest) = workspace.split_at_mut_checked(cells::len(image.width(), image.height()))?;
     let mut cells = Cells::of(image, &inliers, root, store, rest);
     let outward = Outward::of(&cells)?;

@@ -9,19 +9,31 @@ use crate::ellipsoid::{self, Ellipsoid};
 use crate::image::{Census, Image, Usable, Window};
 use crate::inliers::{Band, Inliers};
 use crate::integrability;
+use crate::joint::{self, Joint};
 use crate::lmeds::{self, Fit, FitError, Method};
 use crate::location::{self, Location};
+use crate::mat3;
 use crate::orientation::{self, Orientation, RANK_THRESHOLD};
 use crate::rank::{self, Rank};
 use crate::tilt::{TiltEstimator, Tilts};
 use heapless::Vec;
+use libm::{atan2, hypot};
 
 /// The noise that would make a degenerate scene look like this one must be so many times the noise there is. Degenerate
 /// scenes (cylinders, planes, cones, ramps, mixtures of colors, with and without noise) come to 0.2-1.1, photographs
 /// that give good normals to 1.9-6.7; at 1.5 nearly half of a coefficient of C can be bias.
 const SMALLEST_NOISE_MARGIN: f64 = 1.5;
 
-/// What to do, with the defaults of the paper.
+/// How the orthogonal transformation that the regression leaves open is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Road {
+    /// From integrability and outward normals together, see [`crate::joint`].
+    Joint,
+    /// The paper's: slants from tilts (section 3).
+    Paper,
+}
+
+/// What to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
     /// The regression in color space.
@@ -29,7 +41,10 @@ pub struct Params {
     /// A pixel is saturated if a channel is at or above this; `None` for the largest value of the pixel type, and no
     /// limit for f32. Default `None`.
     pub saturation: Option<f32>,
-    /// Where the tilts come from. Default [`TiltEstimator::Pentland`].
+    /// How F is oriented. Given tilts, and a picture that is too small for [`Road::Joint`], take the paper's road whatever
+    /// this is. Default [`Road::Joint`].
+    pub road: Road,
+    /// Where the tilts come from, on the paper's road. Default [`TiltEstimator::Pentland`].
     pub tilts: TiltEstimator,
     /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
     pub rank_threshold: f64,
@@ -42,6 +57,7 @@ impl Default for Params {
         Self {
             lmeds: lmeds::Params::default(),
             saturation: None,
+            road: Road::Joint,
             tilts: TiltEstimator::Pentland,
             rank_threshold: RANK_THRESHOLD,
             fallback: SlantFallback::LeastSquares,
@@ -99,6 +115,8 @@ pub enum SlantSource {
     LeeRosenfeld,
     /// There is no root: Zheng and Chellappa's slants.
     ZhengChellappa,
+    /// F was oriented as a whole ([`Road::Joint`]): its slants follow from it.
+    Joint,
 }
 
 /// Slants that are consistent with the tilts, and how integrable their normals are.
@@ -152,6 +170,8 @@ pub struct Solution {
     pub ellipsoid: Option<Ellipsoid>,
     /// The tilts of the rows of F.
     pub tilts: Option<Tilts>,
+    /// How sure the orientation is; `None` on the paper's road.
+    pub joint: Option<Joint>,
     /// Slants and F.
     pub choice: Option<Choice>,
 }
@@ -191,6 +211,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         inlier_count: 0,
         ellipsoid: None,
         tilts: None,
+        joint: None,
         choice: None,
     };
 
@@ -233,8 +254,18 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         solution.inlier_count = solution.inliers.count(image);
     }
 
-    solution.outcome = Outcome::NoTilt;
     let inliers = solution.inliers;
+    if params.road == Road::Joint && !matches!(params.tilts, TiltEstimator::Given(_)) {
+        solution.joint = joint::estimate(image, |window| inliers.bits(window), &ellipsoid.root, workspace);
+        if let Some(joint) = &solution.joint {
+            let (tilts, choice) = oriented(joint, &ellipsoid, params.rank_threshold);
+            let is_solved = choice.orientation.rank == 3;
+            solution.outcome = if is_solved { Outcome::Solved } else { Outcome::RankDeficient };
+            (solution.tilts, solution.choice) = (Some(tilts), Some(choice));
+            return Ok(solution);
+        }
+    }
+    solution.outcome = Outcome::NoTilt;
     solution.tilts = params.tilts.estimate(image, &inliers, workspace);
     let Some(Tilts { tilts, .. }) = solution.tilts else { return Ok(solution) };
 
@@ -246,6 +277,18 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         Some(_) => solution.outcome = Outcome::Solved,
     }
     Ok(solution)
+}
+
+/// F as a whole.
+fn oriented(joint: &Joint, ellipsoid: &Ellipsoid, rank_threshold: f64) -> (Tilts, Choice) {
+    let (inverse, _) = mat3::pseudo_inverse(&mat3::svd(&ellipsoid.root), f64::EPSILON);
+    let f = mat3::multiply(&inverse, &mat3::transpose(&joint.rows));
+    let orientation = Orientation::new(f, rank_threshold);
+    let tilts = Tilts::alone(f.map(|[x, y, _]| atan2(y, x)));
+    let slants = f.map(|[x, y, z]| atan2(hypot(x, y), z));
+    let choice =
+        Choice { slants, source: SlantSource::Joint, candidates: Vec::new(), chosen: 0, orientation };
+    (tilts, choice)
 }
 
 /// The candidate slants for these tilts, and the one whose normals are most integrable (section 3.4, steps 4-8).

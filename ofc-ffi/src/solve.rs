@@ -14,11 +14,12 @@ use crate::status::{
     ofc_status,
 };
 use crate::types::{
-    count, ofc_census, ofc_color_fit, ofc_ellipsoid, ofc_inliers, ofc_lmeds_params, ofc_location,
+    count, flat, ofc_census, ofc_color_fit, ofc_ellipsoid, ofc_inliers, ofc_lmeds_params, ofc_location,
     ofc_orientation, ofc_slants, ofc_tilts,
 };
 use core::ffi::c_void;
-use ofc_core::solve::{self, Candidate, Params, SlantFallback, SlantSource, Solution};
+use ofc_core::joint::{Evidence, Joint};
+use ofc_core::solve::{self, Candidate, Params, Road, SlantFallback, SlantSource, Solution};
 use ofc_core::tilt::TiltEstimator;
 
 /// Where the slants come from: one of OFC_SLANTS_*.
@@ -37,6 +38,28 @@ pub const OFC_SLANTS_PENTLAND: i32 = 4;
 pub const OFC_SLANTS_LEE_ROSENFELD: i32 = 5;
 /// There is no root: Zheng and Chellappa's slants.
 pub const OFC_SLANTS_ZHENG_CHELLAPPA: i32 = 6;
+
+/// F was oriented as a whole (OFC_ROAD_JOINT): its slants follow from it.
+pub const OFC_SLANTS_JOINT: i32 = 7;
+
+/// How the orthogonal transformation that the regression leaves open is found: one of OFC_ROAD_*.
+pub type ofc_road = i32;
+/// From integrability on windows of several sizes and from normals that point outward, each as far as it can be trusted
+/// in this picture.
+pub const OFC_ROAD_JOINT: i32 = 0;
+/// The paper's: slants from tilts (section 3). Good on closed convex shapes, poor on relief that touches the frame.
+pub const OFC_ROAD_PAPER: i32 = 1;
+
+/// What decided the orientation: one of OFC_EVIDENCE_*.
+pub type ofc_evidence = i32;
+/// Tilts, on the paper's road: nothing is known of how sure they are.
+pub const OFC_EVIDENCE_TILTS_ALONE: i32 = 0;
+/// Mostly that normals point outward, which is what tilts rest on.
+pub const OFC_EVIDENCE_OUTWARD: i32 = 1;
+/// Mostly integrability.
+pub const OFC_EVIDENCE_INTEGRABILITY: i32 = 2;
+/// Both.
+pub const OFC_EVIDENCE_BOTH: i32 = 3;
 
 /// What to do where eqs. 25 have no root: one of OFC_FALLBACK_*.
 pub type ofc_slant_fallback = i32;
@@ -67,8 +90,32 @@ pub struct ofc_solve_params {
     pub tilt_estimator: ofc_tilt_estimator,
     /// What to do where eqs. 25 have no root, one of OFC_FALLBACK_*. Default OFC_FALLBACK_LEAST_SQUARES.
     pub slant_fallback: ofc_slant_fallback,
+    /// How F is oriented, one of OFC_ROAD_*. Given tilts, and a picture that is too small for OFC_ROAD_JOINT, take the paper's
+    /// road whatever this is; tilt_estimator and slant_fallback are for that road. Default OFC_ROAD_JOINT.
+    pub road: ofc_road,
     /// Must be zero.
-    pub reserved: [u32; 6],
+    pub reserved: [u32; 5],
+}
+
+/// How sure the orientation of F is; all zero on the paper's road. Errors of C, which turn and bend normals as well, come on
+/// top of it.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_confidence {
+    /// Covariance of the small rotation, a vector in the frame of the normals, by which all of them may be turned; radians
+    /// squared, row-major.
+    pub covariance: [f64; 9],
+    /// The root mean square angle by which a normal is expected to be turned, in radians.
+    pub error_rad: f64,
+    /// Convex or concave: from 0 (the surface is as much a dome as a hollow) to 1 (all of it is a dome).
+    pub dome: f64,
+    /// How much less likely the next best orientation elsewhere is, as a difference of log likelihoods; infinite where there
+    /// is none.
+    pub second_best: f64,
+    /// What decided, one of OFC_EVIDENCE_*.
+    pub evidence: ofc_evidence,
+    /// Zero.
+    pub reserved: u32,
 }
 
 /// What ofc_solve() found. On a positive status the fields of the stages that were not reached are zero.
@@ -101,9 +148,11 @@ pub struct ofc_solution {
     pub ellipsoid: ofc_ellipsoid,
     /// Tilts of the rows of F.
     pub tilts: ofc_tilts,
-    /// Slants of the rows of F, from +z in [0, pi/2].
+    /// Slants of the rows of F, from +z: in [0, pi/2] on the paper's road, in [0, pi] on the other.
     pub slant_rad: [f64; 3],
-    /// All slants consistent with the tilts, by ascending first slant.
+    /// How sure the orientation is.
+    pub confidence: ofc_confidence,
+    /// On the paper's road, all slants consistent with the tilts, by ascending first slant.
     pub candidates: [ofc_slants; OFC_MAX_CANDIDATES],
     /// F and its inverse.
     pub orientation: ofc_orientation,
@@ -112,24 +161,28 @@ pub struct ofc_solution {
 // SAFETY: integers and floats.
 unsafe impl Plain for ofc_solve_params {}
 // SAFETY: as above.
+unsafe impl Plain for ofc_confidence {}
+// SAFETY: as above.
 unsafe impl Plain for ofc_solution {}
 
 impl ofc_solve_params {
     fn defaults() -> Self {
-        let Params { lmeds: _, saturation: _, tilts: _, rank_threshold, fallback: _ } = Params::default();
+        let Params { lmeds: _, saturation: _, road: _, tilts: _, rank_threshold, fallback: _ } =
+            Params::default();
         Self {
             lmeds: ofc_lmeds_params::defaults(),
             rank_threshold,
             tilt_rad: [0.0; 3],
             tilt_estimator: OFC_TILT_PENTLAND,
             slant_fallback: OFC_FALLBACK_LEAST_SQUARES,
-            reserved: [0; 6],
+            road: OFC_ROAD_JOINT,
+            reserved: [0; 5],
         }
     }
 
     fn check(self) -> Result<Params, ofc_status> {
-        let Self { lmeds, rank_threshold, tilt_rad, tilt_estimator, slant_fallback, reserved } = self;
-        if reserved != [0; 6] {
+        let Self { lmeds, rank_threshold, tilt_rad, tilt_estimator, slant_fallback, road, reserved } = self;
+        if reserved != [0; 5] {
             return Err(OFC_STATUS_RESERVED_NOT_ZERO);
         }
         let (lmeds, saturation) = lmeds.check()?;
@@ -150,8 +203,31 @@ impl ofc_solve_params {
             OFC_TILT_GIVEN => TiltEstimator::Given(tilt_rad),
             _ => return Err(OFC_STATUS_INVALID_PARAMETER),
         };
-        let params = Params { lmeds, saturation, tilts, rank_threshold, fallback };
+        let road = match road {
+            OFC_ROAD_JOINT => Road::Joint,
+            OFC_ROAD_PAPER => Road::Paper,
+            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
+        };
+        let params = Params { lmeds, saturation, road, tilts, rank_threshold, fallback };
         if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
+    }
+}
+
+impl From<Joint> for ofc_confidence {
+    fn from(joint: Joint) -> Self {
+        let Joint { rows: _, covariance, evidence, dome, second_best } = joint;
+        Self {
+            covariance: flat(&covariance),
+            error_rad: joint.expected_error(),
+            dome,
+            second_best,
+            evidence: match evidence {
+                Evidence::Outward => OFC_EVIDENCE_OUTWARD,
+                Evidence::Integrability => OFC_EVIDENCE_INTEGRABILITY,
+                Evidence::Both => OFC_EVIDENCE_BOTH,
+            },
+            reserved: 0,
+        }
     }
 }
 
@@ -175,6 +251,7 @@ impl From<&Solution> for ofc_solution {
             inlier_count,
             ellipsoid,
             tilts,
+            joint,
             choice,
         } = solution;
         let unfitted = ofc_color_fit { color_deviations: *color_deviations, ..ofc_color_fit::default() };
@@ -193,6 +270,7 @@ impl From<&Solution> for ofc_solution {
             ellipsoid: ellipsoid.map_or(ofc_ellipsoid::default(), ofc_ellipsoid::from),
             tilts: tilts.map_or(ofc_tilts::default(), ofc_tilts::from),
             slant_rad: [0.0; 3],
+            confidence: joint.map_or(ofc_confidence::default(), ofc_confidence::from),
             candidates: [ofc_slants::default(); OFC_MAX_CANDIDATES],
             orientation: ofc_orientation::default(),
         };
@@ -209,6 +287,7 @@ impl From<&Solution> for ofc_solution {
                 SlantSource::Pentland => (OFC_SLANTS_PENTLAND, -1),
                 SlantSource::LeeRosenfeld => (OFC_SLANTS_LEE_ROSENFELD, -1),
                 SlantSource::ZhengChellappa => (OFC_SLANTS_ZHENG_CHELLAPPA, -1),
+                SlantSource::Joint => (OFC_SLANTS_JOINT, -1),
             };
             result.orientation = choice.orientation.into();
         }

@@ -41,6 +41,7 @@ int prepare_stages(void **state)
     render_ball();
     const ofc_image image = ball_image();
     ofc_solve_params_default(&stages.params);
+    stages.params.road = OFC_ROAD_PAPER;
     const ofc_status fitted = ofc_lmeds_fit(&image, &stages.params.lmeds, workspace, sizeof workspace, &stages.fit,
                                             &stages.inliers);
     const ofc_status solved =

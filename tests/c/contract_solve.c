@@ -113,7 +113,9 @@ static void bad_parameters(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, slant_fallback, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[0], 1);
-    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[5], 1);
+    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[4], 1);
+    BAD(OFC_STATUS_INVALID_PARAMETER, road, 2);
+    BAD(OFC_STATUS_INVALID_PARAMETER, road, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[0], 1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[3], 1);
 #undef BAD
@@ -188,6 +190,35 @@ static void answers(void **state)
     strict.slant_fallback = 0;
     assert_int_equal(ofc_solve(&image, &strict, workspace, sizeof workspace, NULL, &again), OFC_STATUS_OK);
     assert_memory_equal(&again, &out.solution, sizeof again);
+}
+
+static void roads(void **state)
+{
+    (void)state;
+    /* The default: F as a whole, with how sure it is. */
+    const ofc_image image = ball_image();
+    ofc_solve_params params;
+    assert_int_equal(ofc_solve_params_default(&params), OFC_STATUS_OK);
+    assert_int_equal(params.road, OFC_ROAD_JOINT);
+    static ofc_solution joint;
+    assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &joint), OFC_STATUS_OK);
+    assert_int_equal(joint.slant_source, OFC_SLANTS_JOINT);
+    assert_true(joint.candidate_count == 0 && joint.chosen == -1);
+    const ofc_confidence *confidence = &joint.confidence;
+    assert_true(confidence->evidence >= OFC_EVIDENCE_OUTWARD && confidence->evidence <= OFC_EVIDENCE_BOTH);
+    assert_true(confidence->error_rad > 0 && confidence->error_rad < 0.2);
+    assert_true(confidence->dome > 0.9 && confidence->dome <= 1 && confidence->second_best > 0);
+    for (int c = 0; c < 3; c++) /* the ball suits the paper's road too */
+        assert_true(fabs(joint.slant_rad[c] - stages.solution.slant_rad[c]) < 0.2);
+    /* The paper's road claims no certainty; given tilts take it. */
+    assert_int_equal(stages.solution.slant_source, OFC_SLANTS_ROOT);
+    assert_true(stages.solution.confidence.evidence == OFC_EVIDENCE_TILTS_ALONE);
+    assert_true(stages.solution.confidence.error_rad == 0);
+    params.tilt_estimator = OFC_TILT_GIVEN;
+    memcpy(params.tilt_rad, stages.solution.tilts.tilt_rad, sizeof params.tilt_rad);
+    assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &joint), OFC_STATUS_OK);
+    assert_int_equal(joint.slant_source, OFC_SLANTS_ROOT);
+    assert_true(joint.slant_rad[0] == stages.solution.slant_rad[0]);
 }
 
 static void exact_workspace(void **state)
@@ -320,7 +351,7 @@ int main(void)
         cmocka_unit_test(answers),         cmocka_unit_test(pictures_without_an_answer),
         cmocka_unit_test(exact_workspace), cmocka_unit_test(sizes),
         cmocka_unit_test(defaults),        cmocka_unit_test(messages_and_version),
-        cmocka_unit_test(threads_at_once),
+        cmocka_unit_test(threads_at_once), cmocka_unit_test(roads),
     };
     return cmocka_run_group_tests(tests, prepare_stages, NULL);
 }

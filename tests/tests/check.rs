@@ -7,12 +7,12 @@ use ofc_core::mat3;
 use ofc_core::normals::{self, Length};
 use ofc_core::orientation::Orientation;
 use ofc_core::render::DepthMap;
-use ofc_core::solve::{self, Outcome, Solution};
+use ofc_core::solve::{self, Outcome, Road, Solution};
 use ofc_tests::photographs;
 use ofc_tests::scene::{CLEAN, Matrix, PAPER, Scene, dot};
 
 fn solved(image: &Image) -> Solution {
-    let params = solve::Params::default();
+    let params = solve::Params { road: Road::Paper, ..solve::Params::default() };
     let pixels = image.width() * image.height();
     let mut workspace = vec![0.0; solve::workspace_len(pixels, params.lmeds.sample_size)];
     let solution = solve::solve(image, &params, &mut workspace).expect("a solution");

@@ -2,7 +2,7 @@
 
 use ofc_core::lmeds;
 use ofc_core::normals::{self, Length};
-use ofc_core::solve::{Outcome, Params, SlantSource, Solution, solve, workspace_len};
+use ofc_core::solve::{Outcome, Params, Road, SlantSource, Solution, solve, workspace_len};
 use ofc_tests::linear::{
     Matrix, apply, cholesky, degrees_between, median, nearest_orthogonal, transpose, unit,
 };
@@ -10,7 +10,8 @@ use ofc_tests::photographs::{self, Photograph};
 use ofc_tests::tolerances::PHOTOGRAPH_SEED;
 
 fn seeded(seed: u64) -> Params {
-    Params { lmeds: lmeds::Params { seed, ..lmeds::Params::default() }, ..Params::default() }
+    let lmeds = lmeds::Params { seed, ..lmeds::Params::default() };
+    Params { lmeds, road: Road::Paper, ..Params::default() }
 }
 
 fn solved(photograph: &Photograph, params: &Params) -> Solution {

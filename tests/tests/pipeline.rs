@@ -8,7 +8,7 @@ use ofc_core::lmeds;
 use ofc_core::normals::{Length, normal};
 use ofc_core::orientation::{Orientation, RANK_THRESHOLD, compose};
 use ofc_core::rng::Rng;
-use ofc_core::solve::{Outcome, Params, SlantSource, Solution, solve, workspace_len};
+use ofc_core::solve::{Outcome, Params, Road, SlantSource, Solution, solve, workspace_len};
 use ofc_tests::linear::{Matrix, degrees_between, length, median, multiply};
 use ofc_tests::scenes::{
     Layout, Scene, cone, cylinder, direction, ellipsoid as ellipsoid_surface, paraboloid, plane, sphere,
@@ -18,7 +18,8 @@ use ofc_tests::tolerances::{ELLIPSOID_TILT, NOISE_FREE, SPHERE, SPHERE_IN_NOISE}
 use std::collections::BTreeMap;
 
 fn seeded(seed: u64) -> Params {
-    Params { lmeds: lmeds::Params { seed, ..lmeds::Params::default() }, ..Params::default() }
+    let lmeds = lmeds::Params { seed, ..lmeds::Params::default() };
+    Params { lmeds, road: Road::Paper, ..Params::default() }
 }
 
 fn solved(scene: &Scene, params: &Params) -> Solution {

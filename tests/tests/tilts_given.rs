@@ -86,7 +86,7 @@ fn on_photographs_the_limit_keeps_the_surface_from_flattening() {
     for name in ["gelsight_ball_6mm", "gelsight_ball_9mm", "cat_figurine"] {
         let Some(photo) = photographs::load(name) else { return };
         let image = photo.image();
-        let params = solve::Params::default();
+        let params = solve::Params { road: solve::Road::Paper, ..solve::Params::default() };
         let len = solve::workspace_len(photo.width * photo.height, params.lmeds.sample_size);
         let mut workspace = vec![0.0; len];
         let solution = solve::solve(&image, &params, &mut workspace).expect("a solution");

@@ -47,9 +47,9 @@ pub(super) struct Moments {
 pub(super) struct Plane {
     /// The mean of N.
     pub middle: [f64; 3],
-    /// N_x and N_y.
+    /// `N_x` and `N_y`.
     pub gradient: [[f64; 3]; 2],
-    /// The variances of N_x and N_y and their covariance (xx, xy, yy), as multiples of that of a pixel.
+    /// The variances of `N_x` and `N_y` and their covariance (xx, xy, yy), as multiples of that of a pixel.
     pub variance: [f64; 3],
 }
 

@@ -34,13 +34,16 @@ const ROUNDS: usize = 5;
 /// s^2 above this many times its variance loses weight, quickly.
 const CUT: f64 = 4.0;
 
-/// The median of the square of a standard normal number.
-const MEDIAN_SQUARE: f64 = 0.454_936;
+/// The medians of the square of a normal number of variance 1, and of the sum of two squares of variance 1/2.
+const MEDIAN_OF_ONE: f64 = 0.454_936;
+const MEDIAN_OF_TWO: f64 = core::f64::consts::LN_2;
 
-/// Systematic errors: as if there were this many independent windows where they explain all of s, ...
+/// Systematic errors: as if there were this many independent windows where they explain all of s, and more with the cube of
+/// the share that they explain.
 const SYSTEMATIC_WINDOWS: f64 = 0.3;
-/// ... and more where they explain less, with this power.
-const SYSTEMATIC_POWER: i32 = 4;
+
+/// The scatter over sixteen parts at most, neighbours of each other, is less than it would be over pictures.
+const NEIGHBOURS: f64 = 2.0;
 
 /// What windows of one size say.
 #[derive(Clone, Copy, Debug)]
@@ -54,13 +57,13 @@ pub(super) struct Integrable {
 /// One window.
 #[derive(Clone, Copy)]
 struct Record {
-    /// N x N_x and N x N_y.
+    /// N x `N_x` and N x `N_y`.
     v: [f64; 6],
-    /// Variances of N_x and N_y and their covariance, as multiples of that of a pixel.
+    /// Variances of `N_x` and `N_y` and their covariance, as multiples of that of a pixel.
     variance: [f64; 3],
     /// The mean of N.
     middle: [f64; 3],
-    /// `(N.N_x)^2 + (N.N_y)^2` less what noise adds.
+    /// `(N.N_x)^2 + (N.N_y)^2`.
     radial: f64,
     /// Which part of the picture it lies in.
     part: usize,
@@ -68,20 +71,23 @@ struct Record {
 
 impl Record {
     fn load(numbers: &[f32; RECORD]) -> Self {
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = numbers.map(f64::from);
-        let part = n as usize;
+        let [.., part] = *numbers;
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, _] = numbers.map(f64::from);
+        let part = part.to_bits() as usize;
         Self { v: [a, b, c, d, e, f], variance: [g, h, i], middle: [j, k, l], radial: m, part }
     }
 
     fn store(&self, numbers: &mut [f32; RECORD]) {
-        let rest = [self.radial, self.part as f64];
-        let all = self.v.iter().chain(&self.variance).chain(&self.middle).chain(&rest);
+        let all = self.v.iter().chain(&self.variance).chain(&self.middle).chain([&self.radial]);
         for (slot, &value) in numbers.iter_mut().zip(all) {
             *slot = value as f32;
         }
+        let [.., part] = numbers;
+        // A small number: bits that are kept, and no rounding.
+        *part = f32::from_bits(self.part as u32);
     }
 
-    /// The noise of N x N_x for a variance of 1: `[N]x C [N]x^T`.
+    /// The noise of N x `N_x` for a variance of 1: `[N]x C [N]x^T`.
     fn cross_noise(&self, noise: &Mat3) -> Mat3 {
         let [a, b, c] = self.middle;
         let cross = [[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]];
@@ -90,6 +96,12 @@ impl Record {
 
     fn s(&self, rows: &Mat3) -> f64 {
         self.v.iter().zip(flat(rows)).map(|(a, b)| a * b).sum()
+    }
+
+    /// What noise adds to `radial`.
+    fn radial_noise(&self, noise: &Mat3) -> f64 {
+        let [xx, _, yy] = self.variance;
+        mat3::dot(self.middle, mat3::apply(noise, self.middle)) * (xx + yy)
     }
 
     fn variance_at(&self, noise: &Mat3, rows: &Mat3) -> f64 {
@@ -116,16 +128,26 @@ impl Integrable {
         let (records, rest) = scratch.split_at_mut_checked(room * RECORD)?;
         let (squares, variances) = rest.split_at_mut_checked(room)?;
         let (records, _) = records.as_chunks_mut::<RECORD>();
-        let n = collect(cells, noise, records)?;
+        let n = collect(cells, records)?;
         let records = records.get(..n)?;
 
+        let radial = excess(
+            records,
+            |record| [record.radial, record.radial_noise(noise)],
+            MEDIAN_OF_TWO,
+            [&mut *squares, &mut *variances],
+        )?;
         let prior = |rows: &Mat3| outward.cost(rows);
         // Windows overlap fourfold.
         let mut form = Self { squares: Form::ZERO, noise: Form::ZERO, model: 0.0, factor: 0.125 * n as f64 };
         let mut rows = rows;
         for round in 0..ROUNDS {
-            let model = spread(records, noise, &rows, squares, variances)?;
-            let parts = weigh(records, noise, &rows, model, round > 0);
+            let of = |record: &Record| {
+                let s = record.s(&rows);
+                [s * s, record.variance_at(noise, &rows)]
+            };
+            let model = excess(records, of, MEDIAN_OF_ONE, [&mut *squares, &mut *variances])?;
+            let parts = weigh(records, noise, &rows, model.model, round > 0);
             form.squares = sum(&parts.squares);
             form.noise = sum(&parts.noise);
             form.model = (form.squares.at(&rows) - form.noise.at(&rows)).max(0.0);
@@ -138,7 +160,7 @@ impl Integrable {
                 polish(rows, cost(&rows), 120, cost).0
             };
             form.model = (form.squares.at(&rows) - form.noise.at(&rows)).max(0.0);
-            form.factor = parts.information(&form, &rows)?;
+            form.factor = parts.information(&form, &rows, radial.model / (model.noise + model.model))?;
         }
         Some((form, rows))
     }
@@ -155,7 +177,7 @@ impl Integrable {
 }
 
 /// Writes a record of every window that is full enough; how many they are, `None` where they are too few.
-fn collect(cells: &Cells, noise: &Mat3, records: &mut [[f32; RECORD]]) -> Option<usize> {
+fn collect(cells: &Cells, records: &mut [[f32; RECORD]]) -> Option<usize> {
     let [width, height] = cells.size();
     let parts = Parts::around(cells)?;
     let side = 2.0 * cells.side() as f64;
@@ -171,14 +193,12 @@ fn collect(cells: &Cells, noise: &Mat3, records: &mut [[f32; RECORD]]) -> Option
             let ([a, b, c], [d, e, f]) =
                 (mat3::cross(plane.middle, along_x), mat3::cross(plane.middle, along_y));
             let length = mat3::dot(plane.middle, plane.middle);
-            let [xx, _, yy] = plane.variance;
             let (p, q) = (mat3::dot(plane.middle, along_x), mat3::dot(plane.middle, along_y));
-            let expected = mat3::dot(plane.middle, mat3::apply(noise, plane.middle)) * (xx + yy);
             if length.is_nan() || length <= 0.0 {
                 continue;
             }
             let part = parts.of(cells.middle(x, y));
-            let radial = (p * p + q * q - expected) / length;
+            let radial = p * p + q * q;
             let record = Record {
                 v: [a, b, c, d, e, f],
                 variance: plane.variance,
@@ -195,31 +215,34 @@ fn collect(cells: &Cells, noise: &Mat3, records: &mut [[f32; RECORD]]) -> Option
     (n >= SMALLEST_COUNT).then_some(n)
 }
 
-/// The model's variance: what the median of s^2 is above that of noise.
-fn spread(
+/// What the median of a square is above the median of the variance that noise gives it, and that variance.
+struct Excess {
+    model: f64,
+    noise: f64,
+}
+
+/// `of` gives square and variance of a window; `median` is that of the square for a variance of 1.
+fn excess(
     records: &[[f32; RECORD]],
-    noise: &Mat3,
-    rows: &Mat3,
-    squares: &mut [f32],
-    variances: &mut [f32],
-) -> Option<f64> {
+    of: impl Fn(&Record) -> [f64; 2],
+    median: f64,
+    [squares, variances]: [&mut [f32]; 2],
+) -> Option<Excess> {
     let n = records.len();
     let slots = squares.iter_mut().zip(variances.iter_mut());
     for (record, (square, variance)) in records.iter().map(Record::load).zip(slots) {
-        let s = record.s(rows);
-        *square = (s * s) as f32;
-        *variance = record.variance_at(noise, rows) as f32;
+        let [a, b] = of(&record);
+        (*square, *variance) = (a as f32, b as f32);
     }
     let square = f64::from(kth_smallest(squares.get_mut(..n)?, median_rank(n))?);
-    let variance = f64::from(kth_smallest(variances.get_mut(..n)?, median_rank(n))?);
-    Some((square / MEDIAN_SQUARE - variance).max(0.0))
+    let noise = f64::from(kth_smallest(variances.get_mut(..n)?, median_rank(n))?);
+    Some(Excess { model: (square / median - noise).max(0.0), noise })
 }
 
 /// Sums by part of the picture.
 struct Sums {
     squares: [Form; PARTS * PARTS],
     noise: [Form; PARTS * PARTS],
-    radial: f64,
 }
 
 fn sum(forms: &[Form]) -> Form {
@@ -232,8 +255,7 @@ fn sum(forms: &[Form]) -> Form {
 
 /// The sums with the weights that windows have at `rows`; `robust` ones where s^2 is too large for its variance.
 fn weigh(records: &[[f32; RECORD]], noise: &Mat3, rows: &Mat3, model: f64, robust: bool) -> Sums {
-    let mut sums =
-        Sums { squares: [Form::ZERO; PARTS * PARTS], noise: [Form::ZERO; PARTS * PARTS], radial: 0.0 };
+    let mut sums = Sums { squares: [Form::ZERO; PARTS * PARTS], noise: [Form::ZERO; PARTS * PARTS] };
     for record in records.iter().map(Record::load) {
         let expected = record.variance_at(noise, rows) + model;
         if expected.is_nan() || expected <= 0.0 {
@@ -245,7 +267,6 @@ fn weigh(records: &[[f32; RECORD]], noise: &Mat3, rows: &Mat3, model: f64, robus
             let excess = 1.0 + s * s / (CUT * expected);
             weight /= excess * excess;
         }
-        sums.radial += weight * record.radial * mat3::dot(record.middle, record.middle);
         if let Some(form) = sums.squares.get_mut(record.part) {
             form.add_square(&record.v, weight);
         }
@@ -258,8 +279,9 @@ fn weigh(records: &[[f32; RECORD]], noise: &Mat3, rows: &Mat3, model: f64, robus
 
 impl Sums {
     /// The factor that makes a log likelihood of the ratio of `form` near its minimum `rows`: 3 over the trace of
-    /// H^-1 G, with H its second derivatives and G the scatter of its gradient, and less where errors are systematic.
-    fn information(&self, form: &Integrable, rows: &Mat3) -> Option<f64> {
+    /// H^-1 G, with H its second derivatives and G the scatter of its gradient, and less where errors are systematic:
+    /// `radial` is the share of s^2 that they are.
+    fn information(&self, form: &Integrable, rows: &Mat3, radial: f64) -> Option<f64> {
         let expected = form.noise.at(rows) + form.model;
         if expected.is_nan() || expected <= 0.0 {
             return None;
@@ -290,18 +312,10 @@ impl Sums {
             }
         }
         let least = 1e-6 * trace(&hessian).abs().max(f64::MIN_POSITIVE);
-        let random = trace(&mat3::multiply(&inverse(&hessian, least), &scatter)) / 3.0;
-        let share = (self.radial / expected).max(1e-3);
-        let systematic = 2.0 * power(share) / SYSTEMATIC_WINDOWS;
+        let random = NEIGHBOURS * trace(&mat3::multiply(&inverse(&hessian, least), &scatter)) / 3.0;
+        let share = radial.max(1e-3);
+        let systematic = 2.0 * share * share * share / SYSTEMATIC_WINDOWS;
         let total = random + systematic;
         (total > 0.0).then(|| 1.0 / total)
     }
-}
-
-fn power(base: f64) -> f64 {
-    let mut power = 1.0;
-    for _ in 0..SYSTEMATIC_POWER {
-        power *= base;
-    }
-    power
 }

@@ -95,8 +95,7 @@ impl Parts {
     pub fn of(&self, [x, y]: [f64; 2]) -> usize {
         let ([x0, y0], [width, height]) = (self.from, self.size);
         let index = |at: f64, from: f64, size: f64| {
-            // Positions inside are in range; others count for the part at the border.
-            ((PARTS as f64 * (at - from) / size).max(0.0) as usize).min(PARTS - 1)
+            (1..PARTS).filter(|&border| (at - from) * PARTS as f64 >= border as f64 * size).count()
         };
         index(y, y0, height) * PARTS + index(x, x0, width)
     }
