@@ -61,3 +61,14 @@ pub fn panic_machinery(listing: &str) -> Vec<&str> {
     ];
     listing.lines().filter(|line| SIGNS.iter().any(|sign| line.contains(sign))).collect()
 }
+
+/// The exported functions of ofc in the listing of `nm`.
+#[must_use]
+pub fn exports(listing: &str) -> Vec<&str> {
+    listing
+        .lines()
+        .filter_map(|line| line.split_once(" T "))
+        .map(|(_, name)| name)
+        .filter(|name| name.starts_with("ofc_"))
+        .collect()
+}
