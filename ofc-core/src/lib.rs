@@ -20,6 +20,7 @@ pub mod integrability;
 pub mod lmeds;
 pub mod location;
 pub mod mat3;
+pub mod mat6;
 pub mod normals;
 pub mod orientation;
 pub mod orthogonal;

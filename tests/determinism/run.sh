@@ -9,25 +9,20 @@ cd "$(dirname "$0")/../.."
 # shellcheck source-path=SCRIPTDIR source=../../.ci/bare-metal.sh
 . .ci/bare-metal.sh
 need_cargo
-cross=(thumbv7em-none-eabihf riscv32imafc-unknown-none-elf aarch64-unknown-none armebv7r-none-eabihf)
-mapfile -t rust < <(rust_packages "${cross[@]}" | tr ' ' '\n')
-install_packages "${cortex_m_packages[@]}" "${riscv_packages[@]}" gcc-aarch64-linux-gnu qemu-user "${rust[@]}"
+mapfile -t rust < <(rust_packages thumbv7em-none-eabihf riscv32imafc-unknown-none-elf aarch64-unknown-none \
+    armebv7r-none-eabihf)
+install_packages "${board_packages[@]}" gcc-aarch64-linux-gnu qemu-user "${rust[@]}"
 
-out=$PWD/target/determinism
-board=$PWD/c_examples/firmware/board
-here=$PWD/tests/determinism
+here=tests/determinism
+out=target/determinism
 expected=$here/digests.txt
 mkdir -p "$out"
-warnings=(-Wall -Wextra -Wpedantic -Werror)
-options=(-std=c99 -O2 "${warnings[@]}" -ffreestanding -fno-stack-protector -fno-tree-loop-distribute-patterns
-    -ffp-contract=off -ffunction-sections -fdata-sections -Iinclude -I"$board" -nostdlib -nostartfiles -static
-    "-Wl,--gc-sections" "-Wl,-z,noexecstack" -L"$board")
 portable=("$here"/{main,digest,digest_structs,inputs,stages_pure,stages_render,stages_fit,stages_solve}.c)
-linux=("$here/linux.c")
-bare=("$board/start.c")
+options=(-O2 -std=c99 -Wall -Wextra -Wpedantic -Werror -ffreestanding -fno-stack-protector -ffp-contract=off
+    -fno-tree-loop-distribute-patterns -Iinclude -Ic_examples/firmware/board -nostdlib -static "-Wl,--gc-sections" "-Wl,-z,noexecstack")
 failed=()
 
-# compare NAME COMMAND...: runs the program of this name; its output must be the digests.
+# compare NAME COMMAND...: what the command prints must be the digests.
 compare() {
     local name=$1 status=0
     shift
@@ -44,13 +39,13 @@ compare() {
     failed+=("$name")
 }
 
-host() { # NAME RUSTFLAGS CARGO-OPTION...
-    local name=$1 flags=$2
+# host NAME FLAGS OPTION...: builds for this machine with these flags for rustc and options for cargo.
+host() {
+    local name=$1 flags=$2 library=$out/$1-library
     shift 2
     RUSTFLAGS=$flags cargo build --quiet -p ofc-ffi --no-default-features --features panic-handler \
-        --target-dir "target/determinism/$name-library" "$@"
-    gcc "${options[@]}" -no-pie "${portable[@]}" "${linux[@]}" "$here/memory.c" \
-        "$out/$name-library"/*/libofc.a -o "$out/$name"
+        --target-dir "$library" "$@"
+    gcc "${options[@]}" -no-pie "${portable[@]}" "$here"/{linux,memory}.c "$library"/*/libofc.a -o "$out/$name"
 }
 
 host x86-64-debug ""
@@ -69,28 +64,20 @@ else
     compare x86-64-v3 qemu-x86_64 -cpu max "$out/x86-64-v3"
 fi
 
-build_archive thumbv7em-none-eabihf "" "$out/cortex-m4f-library"
-arm-none-eabi-gcc "${options[@]}" -mthumb -mcpu=cortex-m4 -mfloat-abi=hard -mfpu=fpv4-sp-d16 -T mps2.ld \
-    "${portable[@]}" "${bare[@]}" "$board/cortex_m.c" "$archive" -lgcc -o "$out/cortex-m4f"
-compare cortex-m4f emulate 600 qemu-system-arm -M mps2-an386 -kernel "$out/cortex-m4f"
+for name in cortex-m4f cortex-m7 riscv32; do
+    board "$name"
+    build_archive "$name" "$triple" "$flags"
+    "${compiler[@]}" -O2 "${portable[@]}" "${start[@]}" "$archive" -lgcc -o "$out/$name"
+    compare "$name" emulate "$out/$name"
+done
 
-build_archive thumbv7em-none-eabihf -Ctarget-cpu=cortex-m7 "$out/cortex-m7-library"
-arm-none-eabi-gcc "${options[@]}" -mthumb -mcpu=cortex-m7 -mfloat-abi=hard -mfpu=fpv5-d16 -T mps2.ld \
-    "${portable[@]}" "${bare[@]}" "$board/cortex_m.c" "$archive" -lgcc -o "$out/cortex-m7"
-compare cortex-m7 emulate 600 qemu-system-arm -M mps2-an500 -kernel "$out/cortex-m7"
-
-build_archive riscv32imafc-unknown-none-elf "" "$out/riscv32-library"
-riscv64-unknown-elf-gcc "${options[@]}" -march=rv32imafc_zicsr -mabi=ilp32f -T virt.ld \
-    "${portable[@]}" "${bare[@]}" "$board/riscv.c" "$archive" -lgcc -o "$out/riscv32"
-compare riscv32 emulate 600 qemu-system-riscv32 -M virt -bios none -kernel "$out/riscv32"
-
-build_archive aarch64-unknown-none "" "$out/aarch64-library"
-aarch64-linux-gnu-gcc "${options[@]}" "${portable[@]}" "${linux[@]}" "$archive" -o "$out/aarch64"
+build_archive aarch64 aarch64-unknown-none ""
+aarch64-linux-gnu-gcc "${options[@]}" "${portable[@]}" "$here/linux.c" "$archive" -o "$out/aarch64"
 compare aarch64 qemu-aarch64 "$out/aarch64"
 
-build_archive armebv7r-none-eabihf "" "$out/big-endian-arm-library"
-arm-none-eabi-gcc "${options[@]}" -marm -mbig-endian -mcpu=cortex-r5 -mfloat-abi=hard -mfpu=vfpv3-d16 -Wl,--be8 \
-    "${portable[@]}" "${linux[@]}" "$archive" -lgcc -o "$out/big-endian-arm"
+build_archive big-endian-arm armebv7r-none-eabihf ""
+arm-none-eabi-gcc "${options[@]}" -marm -mbig-endian -mcpu=cortex-r5 -mfloat-abi=hard -mfpu=vfpv3-d16 "-Wl,--be8" \
+    "${portable[@]}" "$here/linux.c" "$archive" -lgcc -o "$out/big-endian-arm"
 compare big-endian-arm qemu-armeb "$out/big-endian-arm"
 
 [ ${#failed[@]} -eq 0 ] || { echo "determinism: ${failed[*]}" >&2; exit 1; }
