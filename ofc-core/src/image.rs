@@ -367,7 +367,7 @@ pub struct Usable {
 impl Usable {
     /// The bits of `window`'s usable pixels.
     #[must_use]
-    #[inline]
+    #[inline(never)]
     #[expect(
         clippy::needless_bitwise_bool,
         reason = "noise decides these comparisons, no branch predictor does"

@@ -7,8 +7,9 @@
 //! Section 2.2.
 
 use crate::ellipsoid::{Coefficients, quadratic_form};
-use crate::image::{Image, Usable, Window};
+use crate::image::{Image, Usable, Window, for_each_bit};
 use crate::location::Location;
+use libm::{fabs, fabsf};
 
 /// Deviations below this are rounding of f32 colors: an exact fit accepts them all.
 const EXACT_FIT: f64 = 1e-5;
@@ -48,10 +49,79 @@ impl Band {
         Self { form, low: low * low, high: high * high }
     }
 
-    #[inline]
-    fn contains(&self, r: f32, g: f32, b: f32) -> bool {
+    fn contains(&self, [r, g, b]: [f32; 3]) -> bool {
         let value = quadratic_form(&self.form, r, g, b);
         value >= self.low && value <= self.high
+    }
+
+    /// Which of the finite colors `among` the window's lie within. Single precision decides where its error cannot matter,
+    /// which is nearly everywhere; the answer is that of double precision.
+    #[inline(never)]
+    fn bits(&self, window: &Window, among: u64) -> u64 {
+        if among == 0 {
+            return 0;
+        }
+        if self.form == [0.0; 6] {
+            return if self.low <= 0.0 && self.high >= 0.0 { among } else { 0 };
+        }
+        let (mut inside, unsure) = match SingleBand::new(self) {
+            Some(band) => band.bits(window),
+            None => (0, u64::MAX),
+        };
+        for_each_bit(unsure & among, |i| {
+            let bit = 1 << i;
+            inside = if self.contains(window.pixel(i)) { inside | bit } else { inside & !bit };
+        });
+        inside & among
+    }
+}
+
+/// A [`Band`] in single precision, with what its rounding can amount to.
+struct SingleBand {
+    form: [f32; 6],
+    middle: f32,
+    half: f32,
+    slack: f32,
+}
+
+impl SingleBand {
+    /// Sixteen roundings: three in each term, one in each coefficient, five in the sum, one in the sum of absolute values,
+    /// three in middle and half and the differences with them.
+    const RELATIVE: f32 = 1.0 / (1 << 20) as f32;
+    /// Terms that are too small to be represented are less than this.
+    const ABSOLUTE: f32 = 1e-9;
+
+    /// `None` for bands of which the bound on the rounding does not hold. With such diagonals a color is either so small
+    /// that no term overflows, or makes one infinite, and then nothing is certain.
+    fn new(band: &Band) -> Option<Self> {
+        let [c11, c22, c33, c12, c13, c23] = band.form;
+        let is_in_range = |c: f64| (1e-30..1e30).contains(&fabs(c));
+        let form = [c11, c22, c33, 2.0 * c12, 2.0 * c13, 2.0 * c23].map(|c| c as f32);
+        let (middle, half) = (0.5 * (band.low + band.high), 0.5 * (band.high - band.low));
+        let holds = c11.min(c22).min(c33) > 0.0
+            && band.form.into_iter().all(|c| c == 0.0 || is_in_range(c))
+            && fabs(middle) + half < 1e30;
+        let (middle, half) = (middle as f32, half as f32);
+        let slack = Self::RELATIVE * (fabsf(middle) + half) + Self::ABSOLUTE;
+        holds.then_some(Self { form, middle, half, slack })
+    }
+
+    /// The colors that certainly lie within, and those of which nothing is certain.
+    fn bits(&self, window: &Window) -> (u64, u64) {
+        let [c11, c22, c33, c12, c13, c23] = self.form;
+        let (mut inside, mut unsure) = (0, 0);
+        let [red, green, blue] = &window.color;
+        for (i, ((&r, &g), &b)) in red.iter().zip(green).zip(blue).enumerate() {
+            let squares = c11 * r * r + c22 * g * g + c33 * b * b;
+            let (rg, rb, gb) = (c12 * r * g, c13 * r * b, c23 * g * b);
+            let size = squares + (fabsf(rg) + fabsf(rb) + fabsf(gb));
+            let error = size * Self::RELATIVE + self.slack;
+            let beyond = fabsf(squares + (rg + rb + gb) - self.middle) - self.half;
+            let certain = fabsf(beyond) > error;
+            inside |= u64::from(beyond < 0.0) << i;
+            unsure |= u64::from(!certain) << i;
+        }
+        (inside, unsure)
     }
 }
 
@@ -79,15 +149,16 @@ impl Inliers {
         Self { usable, residual: Band::NOTHING, norm: Band::NOTHING }
     }
 
+    /// [`Self::bits`], of one and the same type wherever pixels are selected: what takes it is compiled once.
+    pub fn selector(&self) -> impl Fn(&Window) -> u64 + Copy {
+        |window| self.bits(window)
+    }
+
     /// The bits of `window`'s inliers.
     #[must_use]
-    #[inline]
+    #[inline(never)]
     pub fn bits(&self, window: &Window) -> u64 {
-        let usable = self.usable.bits(window);
-        if usable == 0 {
-            return 0;
-        }
-        usable & window.bits(|r, g, b| self.residual.contains(r, g, b) & self.norm.contains(r, g, b))
+        self.norm.bits(window, self.residual.bits(window, self.usable.bits(window)))
     }
 
     /// How many inliers `image` holds.

@@ -229,7 +229,7 @@ pub fn fit(image: &Image, usable: Usable, params: &Params, workspace: &mut [f32]
     let robust = scaled.map(|c| c * scale * scale);
 
     let residuals = image.gather(
-        |window| usable.bits(window),
+        Inliers::all(usable).selector(),
         workspace,
         |r, g, b| fabs(quadratic_form(&robust, r, g, b) - 1.0),
     );

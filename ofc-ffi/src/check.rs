@@ -168,7 +168,7 @@ pub unsafe extern "C" fn ofc_check(
         let test = solution.inliers.into_core();
         // SAFETY: checked and disjoint.
         let scratch = unsafe { floats(workspace, need) };
-        let found = check::check(view, |window| test.bits(window), &orientation, &coefficients, scratch);
+        let found = check::check(view, test.selector(), &orientation, &coefficients, scratch);
         out.write(found.map_err(of_check_error)?.into());
         Ok(OFC_STATUS_OK)
     };
@@ -216,7 +216,7 @@ pub unsafe extern "C" fn ofc_rank_compute(
         if fit.is_some_and(|(z, deviation)| !(z.iter().all(|c| c.is_finite()) && deviation >= 0.0)) {
             return Err(OFC_STATUS_INVALID_PARAMETER);
         }
-        let found = rank::rank(&picture.view, |window| test.bits(window), fit);
+        let found = rank::rank(&picture.view, test.selector(), fit);
         out.write(found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?.into());
         Ok(OFC_STATUS_OK)
     };
