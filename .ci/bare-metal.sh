@@ -13,7 +13,7 @@ board() {
     case $1 in
     cortex-m7)
         triple=thumbv7em-none-eabihf
-        flags=-Ctarget-cpu=cortex-m7
+        flags="-Ctarget-cpu=cortex-m7 -Cllvm-args=-inline-threshold=5"
         tools=arm-none-eabi
         compiler=(arm-none-eabi-gcc -mthumb -mcpu=cortex-m7 -mfloat-abi=hard -mfpu=fpv5-d16 -T mps2.ld)
         emulator=(qemu-system-arm -M mps2-an500)

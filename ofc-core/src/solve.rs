@@ -259,12 +259,17 @@ fn choose(
     let orient = |slants| {
         Orientation::new(orientation::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
     };
+    let selector = inliers.selector();
     let roots = constrained_slant::roots(tilts, ellipsoid.cosines);
     let mut candidates = Vec::new();
     for root in &roots {
         let orientation = orient(root.slants);
+        #[expect(
+            clippy::needless_borrows_for_generic_args,
+            reason = "so that one instance serves tilts_given too"
+        )]
         let integral = if orientation.rank == 3 {
-            integrability::integral(image, inliers.selector(), &orientation.f_inverse)
+            integrability::integral(image, &selector, &orientation.f_inverse)
         } else {
             None
         };

@@ -122,9 +122,7 @@ pub unsafe extern "C" fn ofc_tilt_pentland(
 ) -> ofc_status {
     // SAFETY: the contract of this function.
     of(unsafe {
-        estimate_tilts(image, inliers, tilts, |image, test| {
-            pentland::tilts(image, test.selector())
-        })
+        estimate_tilts(image, inliers, tilts, |image, test| pentland::tilts(image, test.selector()))
     })
 }
 
@@ -331,9 +329,7 @@ pub unsafe extern "C" fn ofc_slant_pentland(
 ) -> ofc_status {
     // SAFETY: the contract of this function.
     of(unsafe {
-        estimate_slants(image, inliers, slants, |image, test| {
-            slant::pentland::slants(image, test.selector())
-        })
+        estimate_slants(image, inliers, slants, |image, test| slant::pentland::slants(image, test.selector()))
     })
 }
 
