@@ -338,11 +338,17 @@ impl Window {
 
     /// A bit a pixel, set where `holds` says so of its color; bits beyond `len` mean nothing.
     #[inline]
-    pub fn bits(&self, holds: impl Fn(f32, f32, f32) -> bool) -> u64 {
-        let [red, green, blue] = &self.color;
+    pub fn bits(&self, mut holds: impl FnMut(f32, f32, f32) -> bool) -> u64 {
+        // Halves, because a bit of 32 is made where a color of 32 bits is compared.
+        const HALF: usize = WINDOW / 2;
+        let [red, green, blue] = self.color.each_ref().map(|channel| channel.as_chunks::<HALF>().0);
         let mut bits = 0;
-        for (i, ((&r, &g), &b)) in red.iter().zip(green).zip(blue).enumerate() {
-            bits |= u64::from(holds(r, g, b)) << i;
+        for (k, ((red, green), blue)) in red.iter().zip(green).zip(blue).enumerate() {
+            let mut half = 0_u32;
+            for (i, ((&r, &g), &b)) in red.iter().zip(green).zip(blue).enumerate() {
+                half |= u32::from(holds(r, g, b)) << i;
+            }
+            bits |= u64::from(half) << (k * HALF);
         }
         bits
     }

@@ -109,19 +109,17 @@ impl SingleBand {
     /// The colors that certainly lie within, and those of which nothing is certain.
     fn bits(&self, window: &Window) -> (u64, u64) {
         let [c11, c22, c33, c12, c13, c23] = self.form;
-        let (mut inside, mut unsure) = (0, 0);
-        let [red, green, blue] = &window.color;
-        for (i, ((&r, &g), &b)) in red.iter().zip(green).zip(blue).enumerate() {
+        let mut certain = true;
+        let inside = window.bits(|r, g, b| {
             let squares = c11 * r * r + c22 * g * g + c33 * b * b;
             let (rg, rb, gb) = (c12 * r * g, c13 * r * b, c23 * g * b);
             let size = squares + (fabsf(rg) + fabsf(rb) + fabsf(gb));
             let error = size * Self::RELATIVE + self.slack;
             let beyond = fabsf(squares + (rg + rb + gb) - self.middle) - self.half;
-            let certain = fabsf(beyond) > error;
-            inside |= u64::from(beyond < 0.0) << i;
-            unsure |= u64::from(!certain) << i;
-        }
-        (inside, unsure)
+            certain &= fabsf(beyond) > error;
+            beyond < 0.0
+        });
+        (inside, if certain { 0 } else { u64::MAX })
     }
 }
 
