@@ -374,17 +374,19 @@ impl Usable {
     /// The bits of `window`'s usable pixels.
     #[must_use]
     #[inline(never)]
-    #[expect(
-        clippy::needless_bitwise_bool,
-        reason = "noise decides these comparisons, no branch predictor does"
-    )]
+    #[expect(clippy::needless_bitwise_bool, reason = "noise decides this, no branch predictor does")]
     pub fn bits(&self, window: &Window) -> u64 {
-        let limit = self.saturation;
+        // Floats are in the order of their bits as integers with a sign, but for negative ones, and what is not finite
+        // has the largest bits of its sign.
+        const NEGATIVE_INFINITY: u32 = f32::NEG_INFINITY.to_bits();
+        let limit = if self.saturation > 0.0 { self.saturation.to_bits() } else { 0 };
         window.masked
             & window.bits(|r, g, b| {
-                let lit = (r > 0.0) | (g > 0.0) | (b > 0.0);
-                let unsaturated = (r < limit) & (g < limit) & (b < limit);
-                lit & unsaturated & r.is_finite() & g.is_finite() & b.is_finite()
+                let colors = [r, g, b].map(f32::to_bits);
+                let [r, g, b] = colors.map(u32::cast_signed);
+                let largest = r.max(g).max(b);
+                let [r, g, b] = colors;
+                (largest > 0) & (largest < limit.cast_signed()) & (r.max(g).max(b) < NEGATIVE_INFINITY)
             })
     }
 
