@@ -46,7 +46,7 @@ budget() {
 for name in cortex-m7 cortex-m4f riscv32; do
     board "$name"
     build_archive "$name" "$triple" "$flags"
-    "${compiler[@]}" -Os "$here"/{main,scene,print}.c "${start[@]}" "$archive" -lgcc -o "$out/$name.elf"
+    "${compiler[@]}" -Os "$here"/{main,scene,print}.c "${start[@]}" "${before[@]}" "$archive" -lgcc -o "$out/$name.elf"
     "$tools-nm" -C "$out/$name.elf" >"$out/$name.symbols"
     if grep -E 'panic|core::fmt|_fail|unwind|_Unwind_|eh_personality' "$out/$name.symbols"; then
         echo "$name: the image holds what panics" >&2

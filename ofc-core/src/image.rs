@@ -332,8 +332,13 @@ impl Window {
 
     /// Pixel `i` as a color, black beyond the window.
     #[must_use]
+    #[inline]
     pub fn pixel(&self, i: usize) -> [f32; 3] {
-        self.color.each_ref().map(|channel| channel.get(i).copied().unwrap_or(0.0))
+        let [red, green, blue] = &self.color;
+        match (red.get(i), green.get(i), blue.get(i)) {
+            (Some(&r), Some(&g), Some(&b)) => [r, g, b],
+            _ => [0.0; 3],
+        }
     }
 
     /// A bit a pixel, set where `holds` says so of its color; bits beyond `len` mean nothing.
@@ -374,7 +379,6 @@ impl Usable {
     /// The bits of `window`'s usable pixels.
     #[must_use]
     #[inline(never)]
-    #[expect(clippy::needless_bitwise_bool, reason = "noise decides this, no branch predictor does")]
     pub fn bits(&self, window: &Window) -> u64 {
         // Floats are in the order of their bits as integers with a sign, but for negative ones, and what is not finite
         // has the largest bits of its sign.
@@ -429,4 +433,37 @@ pub struct Census {
     pub saturated: usize,
     /// The largest absolute channel value of the usable pixels.
     pub largest: f32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn usable_is_what_the_comparisons_say() {
+        let special =
+            [0.0, -0.0, 1e-45, -1e-45, 1.0, -1.0, 254.9, 255.0, f32::MAX, f32::MIN, f32::NAN, -f32::NAN];
+        let infinite =
+            [f32::INFINITY, f32::NEG_INFINITY, f32::from_bits(0x7f80_0001), f32::from_bits(0xff80_0001)];
+        let values: std::vec::Vec<f32> = special.into_iter().chain(infinite).collect();
+        let mut rng = Rng::new(2);
+        for saturation in [255.0, 1e-45, f32::MAX, f32::INFINITY, 0.0, -1.0, f32::NAN] {
+            for _ in 0..200 {
+                let mut window = Window::new();
+                window.masked = rng.next_u64() | rng.next_u64();
+                for channel in &mut window.color {
+                    channel.fill_with(|| values[rng.below(values.len() as u32) as usize]);
+                }
+                let bits = Usable { saturation }.bits(&window);
+                for i in 0..WINDOW {
+                    let color = window.pixel(i);
+                    let expected = window.masked >> i & 1 == 1
+                        && color.iter().all(|c| c.is_finite() && *c < saturation)
+                        && color.iter().any(|&c| c > 0.0);
+                    assert_eq!(bits >> i & 1 == 1, expected, "{color:?} below {saturation}");
+                }
+            }
+        }
+    }
 }

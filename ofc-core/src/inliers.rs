@@ -181,3 +181,68 @@ impl Inliers {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::WINDOW;
+    use crate::rng::Rng;
+
+    /// Compares the bits of random colors with what double precision says of each, and returns how many are inside.
+    fn agree(band: &Band, scale: f32, rng: &mut Rng) -> u32 {
+        let mut window = Window::new();
+        for channel in &mut window.color {
+            channel.fill_with(|| scale * (rng.unit() as f32 - 0.1));
+        }
+        // Onto both limits and a few roundings beside them.
+        for i in 0..WINDOW {
+            let [r, g, b] = window.pixel(i);
+            let value = quadratic_form(&band.form, r, g, b);
+            let limit = if i % 2 == 0 { band.low } else { band.high };
+            let factor = libm::sqrt(limit / value) * (1.0 + (rng.unit() - 0.5) * 1e-6);
+            if i % 4 < 2 && factor.is_finite() {
+                for channel in &mut window.color {
+                    channel[i] = (f64::from(channel[i]) * factor) as f32;
+                }
+            }
+        }
+        let among = rng.next_u64() | rng.next_u64();
+        let bits = band.bits(&window, among);
+        for i in 0..WINDOW {
+            let expected = among >> i & 1 == 1 && band.contains(window.pixel(i));
+            assert_eq!(bits >> i & 1 == 1, expected, "{:?} {band:?}", window.pixel(i));
+        }
+        bits.count_ones()
+    }
+
+    #[test]
+    fn single_precision_changes_no_answer() {
+        let mut rng = Rng::new(6);
+        let mut inside = 0;
+        for n in 0..4000 {
+            // From well conditioned to nearly singular or indefinite; pixel values of every size.
+            let scale = libm::pow(10.0, 30.0 * rng.unit() - 15.0);
+            let form = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0].map(|diagonal: f64| {
+                (diagonal * (0.2 + rng.unit()) + 1.6 * rng.unit() - 0.8) / (scale * scale)
+            });
+            let width = if n % 3 == 0 { 1e-6 } else { rng.unit() };
+            let middle = if n % 5 == 0 { width } else { 1.0 };
+            let band = Band { form, low: middle - width, high: middle + width };
+            inside += agree(&band, scale as f32, &mut rng);
+        }
+        assert!(inside > 10_000, "{inside}");
+    }
+
+    #[test]
+    fn bands_without_an_end_or_a_form() {
+        let mut rng = Rng::new(7);
+        for form in [[0.0; 6], [1.0, 2.0, 3.0, 0.0, -0.5, 0.5], [1e-40, 1.0, 1.0, 0.0, 0.0, 0.0]] {
+            for (low, high) in
+                [(f64::NEG_INFINITY, f64::INFINITY), (f64::INFINITY, f64::NEG_INFINITY), (0.0, 1e308)]
+            {
+                agree(&Band { form, low, high }, 1.0, &mut rng);
+                agree(&Band { form, low, high }, 1e19, &mut rng);
+            }
+        }
+    }
+}
