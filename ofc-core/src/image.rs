@@ -250,12 +250,14 @@ impl<'a> Image<'a> {
         for (channel, out) in self.channels.iter().zip(&mut window.color) {
             let bytes = channel.get(start..).unwrap_or_default();
             let out = out.get_mut(..len).unwrap_or_default();
-            match self.sample {
-                Sample::U8 => read_samples(bytes, self.pixel_stride, out, |[a]: [u8; 1]| f32::from(a)),
-                Sample::U16 => {
+            match (self.sample, self.pixel_stride) {
+                (Sample::U8, 3) => read_bytes::<3>(bytes, out),
+                (Sample::U8, 4) => read_bytes::<4>(bytes, out),
+                (Sample::U8, _) => read_bytes::<1>(bytes, out),
+                (Sample::U16, _) => {
                     read_samples(bytes, self.pixel_stride, out, |b| f32::from(u16::from_ne_bytes(b)));
                 }
-                Sample::F32 => read_samples(bytes, self.pixel_stride, out, f32::from_ne_bytes),
+                (Sample::F32, _) => read_samples(bytes, self.pixel_stride, out, f32::from_ne_bytes),
             }
         }
     }
@@ -290,6 +292,19 @@ impl<'a> Image<'a> {
             });
         });
         out.get_mut(..count).unwrap_or_default()
+    }
+}
+
+/// Every `STRIDE`th byte, as many as `out` holds.
+fn read_bytes<const STRIDE: usize>(bytes: &[u8], out: &mut [f32]) {
+    let (pixels, last) = bytes.as_chunks::<STRIDE>();
+    for (pixel, out) in pixels.iter().zip(out.iter_mut()) {
+        if let Some(&sample) = pixel.first() {
+            *out = f32::from(sample);
+        }
+    }
+    if let (Some(&sample), Some(out)) = (last.first(), out.get_mut(pixels.len())) {
+        *out = f32::from(sample);
     }
 }
 
