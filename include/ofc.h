@@ -35,7 +35,8 @@
  * Threads     no global state: calls on different outputs and workspaces may run at the same time.
  * Same bits   same version, same input, same seed: same output bits, on any target with IEEE 754 arithmetic.
  * NaN         pixels that are NaN or infinite are left out and counted; parameters that are not finite are refused.
- *             The only NaNs in outputs are "no value here" of ofc_slant_curve_sample() and ofc_depth_integrate().
+ *             The only NaNs in outputs are "no value here" of ofc_slant_curve_sample() and ofc_depth_integrate(), whose bits
+ *             are 0x7ff8000000000000 and 0x7fc00000 on every target.
  * Reading     equation and section numbers are those of M. S. Drew, "Direct Solution of Orientation-from-Color Problem
  *             using a Modification of Pentland's Light Source Direction Estimator".
  */

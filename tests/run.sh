@@ -10,7 +10,7 @@ need_cargo
 step() { printf '\n== %s\n' "$*"; }
 
 step "scripts"
-shellcheck -x .ci/run .ci/*.sh c_examples/*.sh tests/*.sh
+shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/determinism/*.sh
 
 step "format and lints"
 cargo fmt --all --check
@@ -23,6 +23,12 @@ step "contract tests from C"
 cmake -S tests -B target/ctest >target/ctest.log
 cmake --build target/ctest --parallel 2 >>target/ctest.log || { cat target/ctest.log >&2; exit 1; }
 ctest --test-dir target/ctest --output-on-failure
+
+step "firmware"
+./c_examples/firmware/run.sh
+
+step "the same bits on every target"
+./tests/determinism/run.sh
 
 step "examples"
 ./tests/examples.sh

@@ -28,7 +28,7 @@ pub use roots::roots;
 
 use crate::mat3::{self, Mat3};
 use core::f64::consts::FRAC_PI_2;
-use libm::{cos, sincos};
+use libm::sincos;
 
 /// Room for solutions: twice as many as there can be isolated ones.
 pub const MAX_CANDIDATES: usize = 8;
@@ -67,7 +67,7 @@ impl Constraints {
         // Finite tilts of opposite sign may still differ by infinity.
         let meaningful =
             differences.iter().all(|d| d.is_finite()) && cosines.iter().all(|h| h.abs() <= LARGEST_COSINE);
-        meaningful.then(|| Self { k: differences.map(cos), h: cosines })
+        meaningful.then(|| Self { k: differences.map(|d| sincos(d).1), h: cosines })
     }
 
     /// Left side minus right side of eqs. 24, and the derivatives by the slants.

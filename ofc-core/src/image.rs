@@ -250,12 +250,14 @@ impl<'a> Image<'a> {
         for (channel, out) in self.channels.iter().zip(&mut window.color) {
             let bytes = channel.get(start..).unwrap_or_default();
             let out = out.get_mut(..len).unwrap_or_default();
-            match self.sample {
-                Sample::U8 => read_samples(bytes, self.pixel_stride, out, |[a]: [u8; 1]| f32::from(a)),
-                Sample::U16 => {
+            match (self.sample, self.pixel_stride) {
+                (Sample::U8, 3) => read_bytes::<3>(bytes, out),
+                (Sample::U8, 4) => read_bytes::<4>(bytes, out),
+                (Sample::U8, _) => read_bytes::<1>(bytes, out),
+                (Sample::U16, _) => {
                     read_samples(bytes, self.pixel_stride, out, |b| f32::from(u16::from_ne_bytes(b)));
                 }
-                Sample::F32 => read_samples(bytes, self.pixel_stride, out, f32::from_ne_bytes),
+                (Sample::F32, _) => read_samples(bytes, self.pixel_stride, out, f32::from_ne_bytes),
             }
         }
     }
@@ -290,6 +292,19 @@ impl<'a> Image<'a> {
             });
         });
         out.get_mut(..count).unwrap_or_default()
+    }
+}
+
+/// Every `STRIDE`th byte, as many as `out` holds.
+fn read_bytes<const STRIDE: usize>(bytes: &[u8], out: &mut [f32]) {
+    let (pixels, last) = bytes.as_chunks::<STRIDE>();
+    for (pixel, out) in pixels.iter().zip(out.iter_mut()) {
+        if let Some(&sample) = pixel.first() {
+            *out = f32::from(sample);
+        }
+    }
+    if let (Some(&sample), Some(out)) = (last.first(), out.get_mut(pixels.len())) {
+        *out = f32::from(sample);
     }
 }
 
@@ -332,17 +347,28 @@ impl Window {
 
     /// Pixel `i` as a color, black beyond the window.
     #[must_use]
+    #[inline]
     pub fn pixel(&self, i: usize) -> [f32; 3] {
-        self.color.each_ref().map(|channel| channel.get(i).copied().unwrap_or(0.0))
+        let [red, green, blue] = &self.color;
+        match (red.get(i), green.get(i), blue.get(i)) {
+            (Some(&r), Some(&g), Some(&b)) => [r, g, b],
+            _ => [0.0; 3],
+        }
     }
 
     /// A bit a pixel, set where `holds` says so of its color; bits beyond `len` mean nothing.
     #[inline]
-    pub fn bits(&self, holds: impl Fn(f32, f32, f32) -> bool) -> u64 {
-        let [red, green, blue] = &self.color;
+    pub fn bits(&self, mut holds: impl FnMut(f32, f32, f32) -> bool) -> u64 {
+        // Halves, because a bit of 32 is made where a color of 32 bits is compared.
+        const HALF: usize = WINDOW / 2;
+        let [red, green, blue] = self.color.each_ref().map(|channel| channel.as_chunks::<HALF>().0);
         let mut bits = 0;
-        for (i, ((&r, &g), &b)) in red.iter().zip(green).zip(blue).enumerate() {
-            bits |= u64::from(holds(r, g, b)) << i;
+        for (k, ((red, green), blue)) in red.iter().zip(green).zip(blue).enumerate() {
+            let mut half = 0_u32;
+            for (i, ((&r, &g), &b)) in red.iter().zip(green).zip(blue).enumerate() {
+                half |= u32::from(holds(r, g, b)) << i;
+            }
+            bits |= u64::from(half) << (k * HALF);
         }
         bits
     }
@@ -367,18 +393,19 @@ pub struct Usable {
 impl Usable {
     /// The bits of `window`'s usable pixels.
     #[must_use]
-    #[inline]
-    #[expect(
-        clippy::needless_bitwise_bool,
-        reason = "noise decides these comparisons, no branch predictor does"
-    )]
+    #[inline(never)]
     pub fn bits(&self, window: &Window) -> u64 {
-        let limit = self.saturation;
+        // Floats are in the order of their bits as integers with a sign, but for negative ones, and what is not finite
+        // has the largest bits of its sign.
+        const NEGATIVE_INFINITY: u32 = f32::NEG_INFINITY.to_bits();
+        let limit = if self.saturation > 0.0 { self.saturation.to_bits() } else { 0 };
         window.masked
             & window.bits(|r, g, b| {
-                let lit = (r > 0.0) | (g > 0.0) | (b > 0.0);
-                let unsaturated = (r < limit) & (g < limit) & (b < limit);
-                lit & unsaturated & r.is_finite() & g.is_finite() & b.is_finite()
+                let colors = [r, g, b].map(f32::to_bits);
+                let [r, g, b] = colors.map(u32::cast_signed);
+                let largest = r.max(g).max(b);
+                let [r, g, b] = colors;
+                (largest > 0) & (largest < limit.cast_signed()) & (r.max(g).max(b) < NEGATIVE_INFINITY)
             })
     }
 
@@ -421,4 +448,37 @@ pub struct Census {
     pub saturated: usize,
     /// The largest absolute channel value of the usable pixels.
     pub largest: f32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn usable_is_what_the_comparisons_say() {
+        let special =
+            [0.0, -0.0, 1e-45, -1e-45, 1.0, -1.0, 254.9, 255.0, f32::MAX, f32::MIN, f32::NAN, -f32::NAN];
+        let infinite =
+            [f32::INFINITY, f32::NEG_INFINITY, f32::from_bits(0x7f80_0001), f32::from_bits(0xff80_0001)];
+        let values: std::vec::Vec<f32> = special.into_iter().chain(infinite).collect();
+        let mut rng = Rng::new(2);
+        for saturation in [255.0, 1e-45, f32::MAX, f32::INFINITY, 0.0, -1.0, f32::NAN] {
+            for _ in 0..200 {
+                let mut window = Window::new();
+                window.masked = rng.next_u64() | rng.next_u64();
+                for channel in &mut window.color {
+                    channel.fill_with(|| values[rng.below(values.len() as u32) as usize]);
+                }
+                let bits = Usable { saturation }.bits(&window);
+                for i in 0..WINDOW {
+                    let color = window.pixel(i);
+                    let expected = window.masked >> i & 1 == 1
+                        && color.iter().all(|c| c.is_finite() && *c < saturation)
+                        && color.iter().any(|&c| c > 0.0);
+                    assert_eq!(bits >> i & 1 == 1, expected, "{color:?} below {saturation}");
+                }
+            }
+        }
+    }
 }

@@ -22,6 +22,7 @@ pub mod joint;
 pub mod lmeds;
 pub mod location;
 pub mod mat3;
+pub mod mat6;
 pub mod normals;
 pub mod orientation;
 pub mod orthogonal;

@@ -15,7 +15,7 @@ use crate::mat3::symmetric_eigen;
 use crate::regression::{self, Estimate, Moments, TERMS};
 use crate::rng::Rng;
 use crate::select::{kth_smallest, median_rank};
-use libm::{ceil, fabs, fabsf, log, log1p, pow, sqrt};
+use libm::{ceil, fabs, fabsf, log, log1p, sqrt};
 
 /// Fewer usable pixels than this are refused: half of them must still hold the six of a subset.
 pub const MIN_PIXELS: usize = 12;
@@ -107,7 +107,8 @@ pub fn subset_count(confidence: f64, outlier_share: f64, min_subsets: u32) -> Op
     if !in_range {
         return None;
     }
-    let good = pow(1.0 - outlier_share, TERMS as f64);
+    let share = 1.0 - outlier_share;
+    let good = (share * share * share) * (share * share * share);
     // log1p(-1) is -infinity when every subset is good, and then the quotient is 0.
     let count = ceil(log(1.0 - confidence) / log1p(-good)).max(1.0).max(f64::from(min_subsets));
     (count <= f64::from(MAX_SUBSETS)).then_some(count as u32)
@@ -228,11 +229,9 @@ pub fn fit(image: &Image, usable: Usable, params: &Params, workspace: &mut [f32]
     };
     let robust = scaled.map(|c| c * scale * scale);
 
-    let residuals = image.gather(
-        |window| usable.bits(window),
-        workspace,
-        |r, g, b| fabs(quadratic_form(&robust, r, g, b) - 1.0),
-    );
+    let residuals = image.gather(Inliers::all(usable).selector(), workspace, |r, g, b| {
+        fabs(quadratic_form(&robust, r, g, b) - 1.0)
+    });
     let median_residual = kth_smallest(residuals, median_rank(residuals.len())).map_or(0.0, f64::from);
     let count = census.usable as f64;
     let dispersion = CONSISTENCY * (1.0 + 5.0 / (count - TERMS as f64)) * median_residual;

@@ -63,7 +63,7 @@ pub fn norms(
 ) -> Option<Location> {
     let (norms, scratch) = workspace.split_at_mut_checked(image.width() * image.height())?;
     let length = |r, g, b| sqrt(quadratic_form(form, r, g, b).max(0.0));
-    let norms = image.gather(|window| inliers.bits(window), norms, length);
+    let norms = image.gather(inliers.selector(), norms, length);
     shortest_half(norms, scratch)
 }
 

@@ -4,7 +4,7 @@
 //! Sections 1.1 and 3.4 (steps 5 and 6), eqs. 7, 8 and 19.
 
 use crate::mat3::{self, Mat3};
-use libm::{cos, sin};
+use libm::sincos;
 
 /// Singular values of F below this share of the largest are zero, unless the caller says otherwise.
 pub const RANK_THRESHOLD: f64 = 1e-3;
@@ -35,7 +35,8 @@ impl Orientation {
 /// The unit vector at a slant from z and a tilt from x (eq. 19), angles in radians.
 #[must_use]
 pub fn direction(slant: f64, tilt: f64) -> [f64; 3] {
-    [sin(slant) * cos(tilt), sin(slant) * sin(tilt), cos(slant)]
+    let ((sin_slant, cos_slant), (sin_tilt, cos_tilt)) = (sincos(slant), sincos(tilt));
+    [sin_slant * cos_tilt, sin_slant * sin_tilt, cos_slant]
 }
 
 /// F from the lengths, slants and tilts of its rows.

@@ -29,7 +29,7 @@ pub mod tilts_given;
 use crate::image::{Image, Window};
 use crate::integrability::{self, Integrability};
 use crate::mat3::{self, Mat3};
-use libm::{acos, atan2, cos, sin, sqrt};
+use libm::{acos, atan2, sincos, sqrt};
 use sample::for_each_cell;
 
 /// Why there is no transformation.
@@ -178,8 +178,8 @@ impl<'a, 'p, S: Fn(&Window) -> u64> Problem<'a, 'p, S> {
 fn agreement(transformation: &Transformation, tilts: [f64; 3]) -> f64 {
     let (mut sum, mut weights) = (0.0, 0.0);
     for ((slant, tilt), wanted) in transformation.slants.iter().zip(transformation.tilts).zip(tilts) {
-        let weight = sin(*slant).abs();
-        sum += weight * cos(tilt - wanted);
+        let weight = sincos(*slant).0.abs();
+        sum += weight * sincos(tilt - wanted).1;
         weights += weight;
     }
     if weights > 0.0 { sum / weights } else { 0.0 }

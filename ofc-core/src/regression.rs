@@ -8,9 +8,9 @@
 //! Detection", Wiley 1987, chapter 2.
 
 use crate::ellipsoid::Coefficients;
+use crate::mat6::{self, Mat6};
 use crate::student_t;
 use libm::sqrt;
-use nalgebra::{Matrix6, Vector6};
 
 /// Coefficients of the quadratic form.
 pub const TERMS: usize = 6;
@@ -73,67 +73,37 @@ impl Moments {
         [[rr, rg, rb], [rg, gg, gb], [rb, gb, bb]]
     }
 
-    fn normal_matrix(&self) -> Matrix6<f64> {
+    fn normal_matrix(&self) -> Mat6 {
         let [r4, r2g2, r2b2, r3g, r3b, r2gb, g4, g2b2, rg3, rg2b, g3b, b4, rgb2, rb3, gb3] = self.quartic;
-        Matrix6::new(
-            r4,
-            r2g2,
-            r2b2,
-            2.0 * r3g,
-            2.0 * r3b,
-            2.0 * r2gb,
-            r2g2,
-            g4,
-            g2b2,
-            2.0 * rg3,
-            2.0 * rg2b,
-            2.0 * g3b,
-            r2b2,
-            g2b2,
-            b4,
-            2.0 * rgb2,
-            2.0 * rb3,
-            2.0 * gb3,
-            2.0 * r3g,
-            2.0 * rg3,
-            2.0 * rgb2,
-            4.0 * r2g2,
-            4.0 * r2gb,
-            4.0 * rg2b,
-            2.0 * r3b,
-            2.0 * rg2b,
-            2.0 * rb3,
-            4.0 * r2gb,
-            4.0 * r2b2,
-            4.0 * rgb2,
-            2.0 * r2gb,
-            2.0 * g3b,
-            2.0 * gb3,
-            4.0 * rg2b,
-            4.0 * rgb2,
-            4.0 * g2b2,
-        )
+        [
+            [r4, r2g2, r2b2, 2.0 * r3g, 2.0 * r3b, 2.0 * r2gb],
+            [r2g2, g4, g2b2, 2.0 * rg3, 2.0 * rg2b, 2.0 * g3b],
+            [r2b2, g2b2, b4, 2.0 * rgb2, 2.0 * rb3, 2.0 * gb3],
+            [2.0 * r3g, 2.0 * rg3, 2.0 * rgb2, 4.0 * r2g2, 4.0 * r2gb, 4.0 * rg2b],
+            [2.0 * r3b, 2.0 * rg2b, 2.0 * rb3, 4.0 * r2gb, 4.0 * r2b2, 4.0 * rgb2],
+            [2.0 * r2gb, 2.0 * g3b, 2.0 * gb3, 4.0 * rg2b, 4.0 * rgb2, 4.0 * g2b2],
+        ]
     }
 
     /// K, the sums of what noise does to the rows of M: noise of variance v in each channel changes the value of a form
     /// D by a variance of v z^T K z in all, z being its coefficients. (Row m of M has the derivative 2 D rho.)
-    fn noise_matrix(&self) -> Matrix6<f64> {
+    fn noise_matrix(&self) -> Mat6 {
         let [rr, gg, bb, rg, rb, gb] = self.quadratic.map(|sum| 4.0 * sum);
-        Matrix6::from([
+        [
             [rr, 0.0, 0.0, rg, rb, 0.0],
             [0.0, gg, 0.0, rg, 0.0, gb],
             [0.0, 0.0, bb, 0.0, rb, gb],
             [rg, rg, 0.0, rr + gg, gb, rb],
             [rb, 0.0, rb, gb, rr + bb, rg],
             [0.0, gb, gb, rb, rg, gg + bb],
-        ])
+        ]
     }
 
     /// The deviation of the noise in each channel that would explain residuals of this sum of squares about z.
     #[must_use]
     pub fn noise(&self, z: &Coefficients, residual_sum: f64) -> f64 {
-        let z = Vector6::from(*z);
-        sqrt(residual_sum / z.dot(&(self.noise_matrix() * z)).max(f64::MIN_POSITIVE))
+        let change = mat6::dot(z, &mat6::apply(&self.noise_matrix(), z));
+        sqrt(residual_sum / change.max(f64::MIN_POSITIVE))
     }
 
     /// The smallest deviation of noise in each channel with which these could be colors that do not determine z.
@@ -144,17 +114,18 @@ impl Moments {
     #[must_use]
     pub fn degenerate_noise(&self, fit: &LeastSquares) -> f64 {
         let noise = self.noise_matrix();
-        let mut power = Matrix6::from(fit.inverse) * noise;
+        let mut power = mat6::multiply(&fit.inverse, &noise);
         for _ in 0..SQUARINGS {
-            power *= power / power.amax().max(f64::MIN_POSITIVE);
+            let largest = mat6::max_abs(&power).max(f64::MIN_POSITIVE);
+            let scaled = power.map(|column| column.map(|entry| entry / largest));
+            power = mat6::multiply(&power, &scaled);
         }
         // Every column is now a multiple of the eigenvector, apart from rounding: the largest one has least of it.
-        let columns: [[f64; TERMS]; TERMS] = power.into();
         let size = |column: &[f64; TERMS]| column.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
-        let largest = columns.into_iter().max_by(|a, b| size(a).total_cmp(&size(b)));
-        let Some(z) = largest.map(Vector6::from) else { return 0.0 };
-        let spread = z.dot(&(noise * z));
-        if spread > 0.0 { sqrt(z.dot(&(self.normal_matrix() * z)).max(0.0) / spread) } else { 0.0 }
+        let Some(z) = power.into_iter().max_by(|a, b| size(a).total_cmp(&size(b))) else { return 0.0 };
+        let spread = mat6::dot(&z, &mat6::apply(&noise, &z));
+        let explained = mat6::dot(&z, &mat6::apply(&self.normal_matrix(), &z));
+        if spread > 0.0 { sqrt(explained.max(0.0) / spread) } else { 0.0 }
     }
 
     /// The least-squares z, and (M^T M)^-1; `None` when the colors do not determine z.
@@ -163,21 +134,17 @@ impl Moments {
         let [rr, gg, bb, rg, rb, gb] = self.quadratic;
         let matrix = self.normal_matrix();
         // Cholesky of the matrix with a unit diagonal: its pivots then say how much of a column the others explain.
-        let diagonal = matrix.diagonal();
+        let diagonal = mat6::diagonal(&matrix);
         if diagonal.iter().any(|&entry| !(entry > 0.0 && entry.is_finite())) {
             return None;
         }
         let scale = diagonal.map(|entry| 1.0 / sqrt(entry));
-        let scaling = Matrix6::from_diagonal(&scale);
-        let cholesky = (scaling * matrix * scaling).cholesky()?;
-        let pivots = cholesky.l_dirty().diagonal();
-        if pivots.iter().any(|&pivot| pivot * pivot < SMALLEST_PIVOT) {
+        let factor = mat6::factor(&mat6::scale(&matrix, &scale))?;
+        if mat6::diagonal(&factor).iter().any(|&pivot| pivot * pivot < SMALLEST_PIVOT) {
             return None;
         }
-        let inverse = scaling * cholesky.inverse() * scaling;
-        let z = inverse * Vector6::new(rr, gg, bb, 2.0 * rg, 2.0 * rb, 2.0 * gb);
-        let coefficients: Coefficients = z.into();
-        let inverse: [[f64; TERMS]; TERMS] = inverse.into();
+        let inverse = mat6::scale(&mat6::inverse(&factor), &scale);
+        let coefficients = mat6::apply(&inverse, &[rr, gg, bb, 2.0 * rg, 2.0 * rb, 2.0 * gb]);
         coefficients.iter().all(|c| c.is_finite()).then_some(LeastSquares { coefficients, inverse })
     }
 }
@@ -247,9 +214,15 @@ pub fn estimates(fit: &LeastSquares, variance: f64, count: u32, confidence: f64)
 /// The z through exactly six colors, or `None` when they do not determine one.
 #[must_use]
 pub fn through(colors: &[[f64; 3]; TERMS]) -> Option<Coefficients> {
-    let rows = Matrix6::from(colors.map(monomials)).transpose();
-    let z = rows.qr().solve(&Vector6::repeat(1.0))?;
-    let z: Coefficients = z.into();
+    let mut columns = [[0.0; TERMS]; TERMS];
+    for (i, color) in colors.iter().enumerate() {
+        for (column, entry) in columns.iter_mut().zip(monomials(*color)) {
+            if let Some(place) = column.get_mut(i) {
+                *place = entry;
+            }
+        }
+    }
+    let z = mat6::solve(&columns, &[1.0; TERMS])?;
     z.iter().all(|c| c.is_finite()).then_some(z)
 }
 

@@ -6,7 +6,7 @@ pub use fallback::SlantFallback;
 
 use crate::constrained_slant::{self, MAX_CANDIDATES};
 use crate::ellipsoid::{self, Ellipsoid};
-use crate::image::{Census, Image, Usable, Window};
+use crate::image::{Census, Image, Usable};
 use crate::inliers::{Band, Inliers};
 use crate::integrability;
 use crate::joint::{self, Joint};
@@ -218,7 +218,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let fit = match lmeds::fit(image, usable, &params.lmeds, workspace) {
         Ok(fit) => fit,
         Err(FitError::RankDeficient { color_deviations }) => {
-            let rank = rank::rank(image, |window| usable.bits(window), None);
+            let rank = rank::rank(image, Inliers::all(usable).selector(), None);
             return Ok(Solution { color_deviations, rank, ..solution });
         }
         Err(error) => return Err(error),
@@ -227,13 +227,12 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     solution.color_deviations = fit.color_deviations;
     solution.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
     solution.inlier_count = fit.inliers;
-    let bits = |window: &Window| solution.inliers.bits(window);
     // Outliers that least squares keeps are no noise: the robust dispersion leaves them out.
     let deviation = match params.lmeds.method {
         Method::LeastMedian => fit.residual_deviation,
         Method::LeastSquares => fit.residual_deviation.min(fit.dispersion),
     };
-    solution.rank = rank::rank(image, bits, Some((fit.z(), deviation)));
+    solution.rank = rank::rank(image, solution.inliers.selector(), Some((fit.z(), deviation)));
     let share = if deviation < fit.residual_deviation { deviation / fit.residual_deviation } else { 1.0 };
     let noise = fit.noise_deviation * share;
     let is_determined = fit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * noise;
@@ -256,7 +255,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
 
     let inliers = solution.inliers;
     if params.road == Road::Joint && !matches!(params.tilts, TiltEstimator::Given(_)) {
-        solution.joint = joint::estimate(image, |window| inliers.bits(window), &ellipsoid.root, workspace);
+        solution.joint = joint::estimate(image, inliers.selector(), &ellipsoid.root, workspace);
         if let Some(joint) = &solution.joint {
             let (tilts, choice) = oriented(joint, &ellipsoid, params.rank_threshold);
             let is_solved = choice.orientation.rank == 3;
@@ -303,12 +302,17 @@ fn choose(
     let orient = |slants| {
         Orientation::new(orientation::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
     };
+    let selector = inliers.selector();
     let roots = constrained_slant::roots(tilts, ellipsoid.cosines);
     let mut candidates = Vec::new();
     for root in &roots {
         let orientation = orient(root.slants);
+        #[expect(
+            clippy::needless_borrows_for_generic_args,
+            reason = "so that one instance serves tilts_given too"
+        )]
         let integral = if orientation.rank == 3 {
-            integrability::integral(image, |window| inliers.bits(window), &orientation.f_inverse)
+            integrability::integral(image, &selector, &orientation.f_inverse)
         } else {
             None
         };

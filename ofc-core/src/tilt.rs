@@ -46,7 +46,7 @@ impl TiltEstimator {
     /// # Scratch
     /// For Chojnacki's [`chojnacki::workspace_len`] `f32`, for the others none.
     pub fn estimate(&self, image: &Image, inliers: &Inliers, workspace: &mut [f32]) -> Option<Tilts> {
-        let bits = |window: &_| inliers.bits(window);
+        let bits = inliers.selector();
         match *self {
             Self::Pentland => pentland::tilts(image, bits),
             Self::LeeRosenfeld => lee_rosenfeld::tilts(image, bits).map(Tilts::alone),

@@ -12,7 +12,6 @@ use crate::status::{
 use crate::types::{count, finite_matrix, ofc_color_fit, ofc_inliers, ofc_tilts};
 use core::ffi::c_void;
 use ofc_core::check::{self, Check, CheckError, Norms};
-use ofc_core::image::Window;
 use ofc_core::orientation::Orientation;
 use ofc_core::rank::{self, Rank};
 use ofc_core::regression::Estimate;
@@ -201,8 +200,8 @@ pub unsafe extern "C" fn ofc_check(
         let test = solution.inliers.into_core();
         // SAFETY: checked and disjoint.
         let scratch = unsafe { floats(workspace, need) };
-        let inliers = |window: &Window| test.bits(window);
-        let found = check::check(view, inliers, &orientation, &coefficients, surface.as_ref(), scratch);
+        let found =
+            check::check(view, test.selector(), &orientation, &coefficients, surface.as_ref(), scratch);
         out.write(found.map_err(of_check_error)?.into());
         Ok(OFC_STATUS_OK)
     };
@@ -251,7 +250,7 @@ pub unsafe extern "C" fn ofc_rank_compute(
         if fit.is_some_and(|(z, deviation)| !(z.iter().all(|c| c.is_finite()) && deviation >= 0.0)) {
             return Err(OFC_STATUS_INVALID_PARAMETER);
         }
-        let found = rank::rank(&picture.view, |window| test.bits(window), fit);
+        let found = rank::rank(&picture.view, test.selector(), fit);
         out.write(found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?.into());
         Ok(OFC_STATUS_OK)
     };

@@ -122,9 +122,7 @@ pub unsafe extern "C" fn ofc_tilt_pentland(
 ) -> ofc_status {
     // SAFETY: the contract of this function.
     of(unsafe {
-        estimate_tilts(image, inliers, tilts, |image, test| {
-            pentland::tilts(image, |window| test.bits(window))
-        })
+        estimate_tilts(image, inliers, tilts, |image, test| pentland::tilts(image, test.selector()))
     })
 }
 
@@ -160,7 +158,7 @@ pub unsafe extern "C" fn ofc_tilt_pentland_along(
         // SAFETY: the contract of this function.
         unsafe {
             estimate_tilts(image, inliers, tilts, |image, test| {
-                pentland::tilts_along(image, |window| test.bits(window), steps)
+                pentland::tilts_along(image, test.selector(), steps)
             })
         }
     };
@@ -184,7 +182,7 @@ pub unsafe extern "C" fn ofc_tilt_lee_rosenfeld(
     // SAFETY: the contract of this function.
     of(unsafe {
         estimate_tilts(image, inliers, tilts, |image, test| {
-            lee_rosenfeld::tilts(image, |window| test.bits(window)).map(alone)
+            lee_rosenfeld::tilts(image, test.selector()).map(alone)
         })
     })
 }
@@ -207,7 +205,7 @@ pub unsafe extern "C" fn ofc_tilt_zheng_chellappa(
     // SAFETY: the contract of this function.
     of(unsafe {
         estimate_tilts(image, inliers, tilts, |image, test| {
-            zheng_chellappa::tilts(image, |window| test.bits(window)).map(alone)
+            zheng_chellappa::tilts(image, test.selector()).map(alone)
         })
     })
 }
@@ -239,7 +237,7 @@ pub unsafe extern "C" fn ofc_tilt_chojnacki(
         // SAFETY: the contract of this function.
         unsafe {
             estimate_tilts(image, inliers, tilts, |image, test| {
-                chojnacki::tilts(image, |window| test.bits(window), &disc).map(alone)
+                chojnacki::tilts(image, test.selector(), &disc).map(alone)
             })
         }
     };
@@ -282,7 +280,7 @@ pub unsafe extern "C" fn ofc_largest_disc(
         disjoint(&[scratch, out.extent], &[a, b, c, d, e, test_extent])?;
         // SAFETY: checked and disjoint.
         let scratch = unsafe { floats(workspace, need) };
-        let found = chojnacki::largest_disc(view, |window| test.bits(window), scratch);
+        let found = chojnacki::largest_disc(view, test.selector(), scratch);
         let chojnacki::Disc { x, y, radius_squared } = found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
         out.write(ofc_disc { x: count(x), y: count(y), radius_squared });
         Ok(OFC_STATUS_OK)
@@ -331,9 +329,7 @@ pub unsafe extern "C" fn ofc_slant_pentland(
 ) -> ofc_status {
     // SAFETY: the contract of this function.
     of(unsafe {
-        estimate_slants(image, inliers, slants, |image, test| {
-            slant::pentland::slants(image, |window| test.bits(window))
-        })
+        estimate_slants(image, inliers, slants, |image, test| slant::pentland::slants(image, test.selector()))
     })
 }
 
@@ -355,7 +351,7 @@ pub unsafe extern "C" fn ofc_slant_lee_rosenfeld(
     // SAFETY: the contract of this function.
     of(unsafe {
         estimate_slants(image, inliers, slants, |image, test| {
-            slant::lee_rosenfeld::slants(image, |window| test.bits(window))
+            slant::lee_rosenfeld::slants(image, test.selector())
         })
     })
 }
@@ -404,7 +400,7 @@ pub unsafe extern "C" fn ofc_channel_maxima(
         let out = Out::new(norms.cast::<[f64; 3]>())?;
         let [a, b, c, d, e] = picture.extents;
         disjoint(&[out.extent], &[a, b, c, d, e, test_extent])?;
-        let found = channel_maxima::norms(&picture.view, |window| test.bits(window));
+        let found = channel_maxima::norms(&picture.view, test.selector());
         out.write(found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?);
         Ok(OFC_STATUS_OK)
     };

@@ -85,7 +85,7 @@ pub unsafe extern "C" fn ofc_integrability_integral(
         let [a, b, c, d, e] = picture.extents;
         disjoint(&[out.extent], &[a, b, c, d, e, test_extent, matrix_extent])?;
         let matrix = finite_matrix(matrix)?;
-        let integral = integrability::integral(&picture.view, |window| test.bits(window), &matrix);
+        let integral = integrability::integral(&picture.view, test.selector(), &matrix);
         out.write(integral.ok_or(OFC_STATUS_NO_CELLS)?.into());
         Ok(OFC_STATUS_OK)
     };
@@ -191,7 +191,7 @@ unsafe fn write_normals(
     // SAFETY: checked and disjoint.
     let out = unsafe { output_slice(out, floats) };
     let stride = stride_bytes / size_of::<f32>();
-    match normals::compute(view, |window| test.bits(window), matrix, length, out, stride) {
+    match normals::compute(view, test.selector(), matrix, length, out, stride) {
         Ok(()) => Ok(OFC_STATUS_OK),
         Err(normals::TooShort) => Err(OFC_STATUS_INVALID_PARAMETER),
     }

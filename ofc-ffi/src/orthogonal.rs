@@ -244,7 +244,7 @@ pub unsafe extern "C" fn ofc_orthogonal_annealing(
         let root = finite_matrix(root)?;
         // SAFETY: checked and disjoint.
         let scratch = unsafe { floats(workspace, need) };
-        let result = annealing::annealing(view, |window| test.bits(window), &root, tilts, &params, scratch);
+        let result = annealing::annealing(view, test.selector(), &root, tilts, &params, scratch);
         out.write(result.map_err(of_orthogonal_error)?.into());
         Ok(OFC_STATUS_OK)
     };
@@ -287,13 +287,8 @@ pub unsafe extern "C" fn ofc_orthogonal_closed_form(
         if polish_evaluations > annealing::MAX_EVALUATIONS {
             return Err(OFC_STATUS_INVALID_PARAMETER);
         }
-        let result = closed_form::closed_form(
-            &picture.view,
-            |window| test.bits(window),
-            &root,
-            tilts,
-            polish_evaluations,
-        );
+        let result =
+            closed_form::closed_form(&picture.view, test.selector(), &root, tilts, polish_evaluations);
         out.write(result.map_err(of_orthogonal_error)?.into());
         Ok(OFC_STATUS_OK)
     };

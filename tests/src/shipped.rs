@@ -44,3 +44,31 @@ pub fn stdout(program: &str, arguments: &[&str]) -> String {
     assert!(output.status.success(), "{program} {arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("text")
 }
+
+/// The names in the listing of `nm -C` that belong to panics, their messages or an unwinder.
+///
+#[must_use]
+pub fn panic_machinery(listing: &str) -> Vec<&str> {
+    const SIGNS: [&str; 8] = [
+        "panic",
+        "core::fmt",
+        "unwrap_failed",
+        "expect_failed",
+        "_fail",
+        "_Unwind_",
+        "eh_personality",
+        "unwind",
+    ];
+    listing.lines().filter(|line| SIGNS.iter().any(|sign| line.contains(sign))).collect()
+}
+
+/// The exported functions of ofc in the listing of `nm`.
+#[must_use]
+pub fn exports(listing: &str) -> Vec<&str> {
+    listing
+        .lines()
+        .filter_map(|line| line.split_once(" T "))
+        .map(|(_, name)| name)
+        .filter(|name| name.starts_with("ofc_"))
+        .collect()
+}

@@ -68,7 +68,9 @@ fn is_minus(from: f64, to: f64, k: f64, h: f64) -> bool {
     // Where the square root is zero, rounding makes it as much as this.
     const NO_SIGN: f64 = 1e-8;
     let (sin, cos) = sincos(from);
-    libm::tan(0.5 * to) * (cos + h) - k * sin < -NO_SIGN
+    // tan(to/2), for slants.
+    let (sin_to, cos_to) = sincos(to);
+    sin_to / (1.0 + cos_to) * (cos + h) - k * sin < -NO_SIGN
 }
 
 #[cfg(test)]

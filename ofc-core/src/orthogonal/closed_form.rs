@@ -27,7 +27,7 @@ use super::{Found, OrthogonalError, Problem, unit};
 use crate::image::{Image, Window, for_each_bit};
 use crate::integrability::SMALLEST_N3;
 use crate::mat3::{self, Mat3};
-use libm::{atan2, cos, sin, sqrt};
+use libm::{atan2, sincos, sqrt};
 
 /// Times that the polish may compute (15) over the picture, unless the caller says otherwise.
 pub const POLISH_EVALUATIONS: u32 = 60;
@@ -159,7 +159,7 @@ fn remaining_angle(
     }
     let ((right_angle, right_least), (left_angle, left_least)) = (right.minimum(), left.minimum());
     let (angle, sign) = if left_least < right_least { (left_angle, -1.0) } else { (right_angle, 1.0) };
-    let (c, s) = (cos(angle), sin(angle));
+    let (s, c) = sincos(angle);
     let combine = |c: f64, s: f64| {
         let ([u1, u2, u3], [v1, v2, v3]) = (u, v);
         [c * u1 + s * v1, c * u2 + s * v2, c * u3 + s * v3]

@@ -1,7 +1,7 @@
 //! A bounded local search among rotations of a frame: Newton steps from differences, for as long as the value falls.
 
 use crate::mat3::{self, IDENTITY, Mat3};
-use libm::{cos, sin, sqrt};
+use libm::{sincos, sqrt};
 
 /// Values of the objective that one round needs: six along the axes, three for the mixed derivatives, one at the end.
 const ROUND: u32 = 10;
@@ -83,7 +83,7 @@ pub(crate) fn rotation(turn: [f64; 3]) -> Mat3 {
         return IDENTITY;
     }
     let [x, y, z] = mat3::scale(turn, 1.0 / angle);
-    let (c, s) = (cos(angle), sin(angle));
+    let (s, c) = sincos(angle);
     let k = 1.0 - c;
     [
         [c + k * x * x, k * x * y - s * z, k * x * z + s * y],

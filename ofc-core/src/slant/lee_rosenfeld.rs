@@ -7,7 +7,7 @@
 use super::{Estimate, Reach, moments, solve_increasing};
 use crate::image::{Image, Window};
 use core::f64::consts::PI;
-use libm::{cos, sin, sqrt};
+use libm::{sincos, sqrt};
 
 /// Beyond this slant eq. 23 is lost in rounding.
 const LARGEST: f64 = PI - 0.01;
@@ -38,12 +38,12 @@ pub fn slants(image: &Image, inliers: impl Fn(&Window) -> u64) -> Option<[Estima
 /// <I^2>^(1/2) / <I> by eq. 23: it grows with the slant.
 #[must_use]
 pub fn ratio(slant: f64) -> f64 {
-    0.5 * sqrt(1.0 + cos(slant)) / mean(slant)
+    0.5 * sqrt(1.0 + sincos(slant).1) / mean(slant)
 }
 
 /// <I> / rho by eq. 23: with the measured <I> it gives the strength rho of the light.
 #[must_use]
 pub fn mean(slant: f64) -> f64 {
-    let c = cos(slant);
-    4.0 / (3.0 * PI) * ((PI - slant) * c + sin(slant)) / (1.0 + c)
+    let (s, c) = sincos(slant);
+    4.0 / (3.0 * PI) * ((PI - slant) * c + s) / (1.0 + c)
 }

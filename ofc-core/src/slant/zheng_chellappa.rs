@@ -13,7 +13,7 @@
 use super::{Estimate, Reach, moments, solve_increasing};
 use crate::image::{Image, Window};
 use core::f64::consts::{FRAC_PI_2, PI};
-use libm::{acos, cos, sin, sqrt};
+use libm::{acos, sincos, sqrt};
 
 /// Intervals of Simpson's rule: f3 to 1e-6.
 const INTERVALS: u32 = 32;
@@ -44,7 +44,7 @@ pub fn slants(image: &Image, object: impl Fn(&Window) -> u64) -> Option<[Estimat
 /// [0, pi/2].
 #[must_use]
 pub fn f3(slant: f64) -> f64 {
-    let (c, s) = (cos(slant), sin(slant));
+    let (s, c) = sincos(slant);
     // Up to this slant a normal sees the light whatever its tilt; there the integrals have closed forms.
     let lit = FRAC_PI_2 - slant;
     let (cl, sl) = (s, c);
@@ -61,8 +61,9 @@ pub fn f3(slant: f64) -> f64 {
             2.0
         };
         let b = lit + slant * t * t;
-        let weight = simpson / (3.0 * f64::from(INTERVALS)) * 2.0 * slant * t * cos(b) / PI;
-        let (one, two) = over_tilts(c * cos(b), s * sin(b));
+        let (sin_b, cos_b) = sincos(b);
+        let weight = simpson / (3.0 * f64::from(INTERVALS)) * 2.0 * slant * t * cos_b / PI;
+        let (one, two) = over_tilts(c * cos_b, s * sin_b);
         first += weight * one;
         second += weight * two;
     }
@@ -73,7 +74,7 @@ pub fn f3(slant: f64) -> f64 {
 fn over_tilts(along: f64, across: f64) -> (f64, f64) {
     // Where the shadow begins; without any tilt dependence there is none.
     let end = if across > 0.0 { acos((-along / across).clamp(-1.0, 1.0)) } else { PI };
-    let (ce, se) = (cos(end), sin(end));
+    let (se, ce) = sincos(end);
     let squares = along * along + 0.5 * across * across;
     let square = squares * end + 2.0 * along * across * se + 0.5 * across * across * se * ce;
     (along * end + across * se, square)

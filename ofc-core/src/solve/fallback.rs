@@ -7,7 +7,7 @@
 use super::SlantSource;
 use crate::constrained_slant;
 use crate::ellipsoid::Ellipsoid;
-use crate::image::{Image, Window};
+use crate::image::Image;
 use crate::inliers::Inliers;
 use crate::orthogonal::tilts_given;
 use crate::slant::{lee_rosenfeld, pentland, zheng_chellappa};
@@ -43,7 +43,7 @@ pub(super) fn slants(
     tilts: [f64; 3],
     workspace: &mut [f32],
 ) -> Option<([f64; 3], SlantSource)> {
-    let bits = |window: &Window| inliers.bits(window);
+    let bits = inliers.selector();
     match fallback {
         SlantFallback::Refuse => None,
         SlantFallback::LeastSquares => {
@@ -68,7 +68,7 @@ pub(super) fn slants(
             Some((estimates.map(|estimate| estimate.slant), SlantSource::LeeRosenfeld))
         }
         SlantFallback::ZhengChellappaSlant => {
-            let estimates = zheng_chellappa::slants(image, |window| inliers.usable.bits(window))?;
+            let estimates = zheng_chellappa::slants(image, Inliers::all(inliers.usable).selector())?;
             Some((estimates.map(|estimate| estimate.slant), SlantSource::ZhengChellappa))
         }
     }

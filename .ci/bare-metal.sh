@@ -1,0 +1,89 @@
+# shellcheck shell=bash
+# Sourced by scripts that build for boards without an operating system and run them under QEMU.
+# shellcheck disable=SC2034 # what is set here is used there
+
+# What the boards below need from Debian.
+board_packages=(gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm qemu-system-misc)
+
+# board NAME: sets what is special to it: `triple` and `flags` for rustc, `compiler` and `emulator` with their options,
+# `start`, the sources that come before main(), `tools`, the prefix of nm and size, and `before`, what is linked before
+# libofc.a.
+board() {
+    local folder=c_examples/firmware/board function
+    start=("$folder/start.c")
+    before=()
+    # Inlining costs more flash than it saves instructions.
+    flags=-Cllvm-args=-inline-threshold=5
+    case $1 in
+    cortex-m7)
+        triple=thumbv7em-none-eabihf
+        flags+=" -Ctarget-cpu=cortex-m7"
+        tools=arm-none-eabi
+        compiler=(arm-none-eabi-gcc -mthumb -mcpu=cortex-m7 -mfloat-abi=hard -mfpu=fpv5-d16 -T mps2.ld)
+        emulator=(qemu-system-arm -M mps2-an500)
+        start+=("$folder/cortex_m.c")
+        ;;
+    cortex-m4f)
+        triple=thumbv7em-none-eabihf
+        tools=arm-none-eabi
+        compiler=(arm-none-eabi-gcc -mthumb -mcpu=cortex-m4 -mfloat-abi=hard -mfpu=fpv4-sp-d16 -T mps2.ld)
+        emulator=(qemu-system-arm -M mps2-an386)
+        start+=("$folder/cortex_m.c")
+        # libgcc has double precision in assembler: sums and products in half the instructions, quotients in four times as
+        # many, and as correctly rounded.
+        for function in dadd dsub dmul ddiv dcmpeq dcmplt dcmple dcmpge dcmpgt dcmpun i2d ui2d d2iz d2uiz f2d d2f; do
+            before+=("-Wl,-u,__aeabi_$function")
+        done
+        before+=(-lgcc)
+        ;;
+    riscv32)
+        triple=riscv32imafc-unknown-none-elf
+        tools=riscv64-unknown-elf
+        compiler=(riscv64-unknown-elf-gcc -march=rv32imafc_zicsr -mabi=ilp32f -T virt.ld)
+        emulator=(qemu-system-riscv32 -M virt -bios none)
+        start+=("$folder/riscv.c")
+        ;;
+    esac
+    compiler+=(-std=c99 -Wall -Wextra -Wpedantic -Werror -ffreestanding -fno-stack-protector -ffp-contract=off
+        -fno-math-errno -fno-tree-loop-distribute-patterns -ffunction-sections -fdata-sections -Iinclude -I"$folder"
+        -nostdlib -nostartfiles -static "-Wl,--gc-sections" "-Wl,-z,noexecstack" -L"$folder")
+}
+
+# rust_packages TRIPLE...: the packages without which rustc cannot compile for them, a line each; none where rustup has
+# the targets, or the sources of the Rust library.
+rust_packages() {
+    local triple sysroot
+    sysroot=$(rustc --print sysroot)
+    for triple in "$@"; do
+        if [ ! -d "$sysroot/lib/rustlib/$triple/lib" ] && [ ! -d "$sysroot/lib/rustlib/src/rust/library" ]; then
+            printf '%s\n' rustc-web rust-web-src
+            return
+        fi
+    done
+}
+
+# build_archive NAME TRIPLE FLAGS: libofc.a by the profile `firmware`, with these flags for rustc. Sets `archive` to its
+# path.
+build_archive() {
+    local name=$1 triple=$2 flags=$3 sysroot folder=target/bare/$1
+    local build=(cargo rustc --quiet --profile firmware -p ofc-ffi --lib --crate-type staticlib
+        --no-default-features --features panic-handler --target "$triple" --target-dir "$folder")
+    sysroot=$(rustc --print sysroot)
+    if [ -d "$sysroot/lib/rustlib/$triple/lib" ]; then
+        RUSTFLAGS=$flags "${build[@]}"
+    elif [ -d "$sysroot/lib/rustlib/src/rust/library" ]; then
+        RUSTC_BOOTSTRAP=1 RUSTFLAGS=$flags "${build[@]}" -Zbuild-std=core
+    else
+        RUSTC_BOOTSTRAP=1 RUSTC=/usr/bin/rustc RUSTFLAGS=$flags "${build[@]}" -Zbuild-std=core
+    fi
+    archive=$folder/$triple/firmware/libofc.a
+}
+
+# emulate PROGRAM OPTION...: runs it on the emulator of the board that was set last; its output and status. A program that
+# hangs ends with status 124.
+emulate() {
+    local program=$1
+    shift
+    timeout 300 "${emulator[@]}" "$@" -nographic -monitor none -serial none -chardev stdio,id=output \
+        -semihosting-config enable=on,target=native,chardev=output -kernel "$program" </dev/null
+}

@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# Builds the firmware for each board, runs it under QEMU, and prints what it says and what it takes. run.sh --write also
+# puts the table of figures into README.md. Fails where a budget is exceeded, or where the image holds what panics.
+# Installs the Debian packages it lacks as root or with sudo. Can be run again.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+# shellcheck source-path=SCRIPTDIR source=../../.ci/packages.sh
+. .ci/packages.sh
+# shellcheck source-path=SCRIPTDIR source=../../.ci/bare-metal.sh
+. .ci/bare-metal.sh
+need_cargo
+mapfile -t rust < <(rust_packages thumbv7em-none-eabihf riscv32imafc-unknown-none-elf)
+install_packages "${board_packages[@]}" "${rust[@]}"
+
+here=c_examples/firmware
+out=target/firmware
+table=$out/table.md
+mkdir -p "$out"
+exceeded=()
+
+# section FILE NAME...: the bytes of these sections.
+section() {
+    local file=$1 name total=0 size
+    shift
+    for name in "$@"; do
+        size=$("$tools-size" -A "$file" | awk -v name="$name" '$1 == name { print $2 }')
+        total=$((total + ${size:-0}))
+    done
+    echo "$total"
+}
+
+# said FILE KIND [NAME]: the number that the program printed after '#'.
+said() {
+    awk -v kind="$2" -v name="${3-}" '$1 == "#" && $2 == kind && (name == "" || $3 == name) { print $NF; exit }' "$1"
+}
+
+# budget WHAT VALUE LIMIT
+budget() {
+    [ "$2" -le "$3" ] || exceeded+=("$1 $2 above $3")
+}
+
+{
+    echo "| | flash | RAM | stack | rendering | cold solve | normals | warm frame |"
+    echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
+} >"$table"
+for name in cortex-m7 cortex-m4f riscv32; do
+    board "$name"
+    build_archive "$name" "$triple" "$flags"
+    "${compiler[@]}" -Os "$here"/{main,scene,print}.c "${start[@]}" "${before[@]}" "$archive" -lgcc -o "$out/$name.elf"
+    "$tools-nm" -C "$out/$name.elf" >"$out/$name.symbols"
+    if grep -E 'panic|core::fmt|_fail|unwind|_Unwind_|eh_personality' "$out/$name.symbols"; then
+        echo "$name: the image holds what panics" >&2
+        exit 1
+    fi
+    echo "== $name"
+    emulate "$out/$name.elf" -icount shift=0 | tee "$out/$name.txt"
+    flash=$(section "$out/$name.elf" .text .rodata .data)
+    ram=$(section "$out/$name.elf" .data .bss)
+    stack=$(said "$out/$name.txt" stack)
+    row="| $name | $flash | $ram | $stack"
+    for stage in render cold normals warm; do
+        row+=" | $(said "$out/$name.txt" instructions $stage)"
+    done
+    echo "$row |" >>"$table"
+    if [ "$name" = cortex-m7 ]; then
+        # budget "flash" "$flash" 65536
+        budget "cold solve" "$(said "$out/$name.txt" instructions cold)" 120000000
+        budget "warm frame" "$(said "$out/$name.txt" instructions warm)" 8000000
+    fi
+done
+echo
+cat "$table"
+if [ "${1-}" = --write ]; then
+    awk -v table="$table" '
+        /^<!-- table -->/ { print; while ((getline line < table) > 0) print line; skip = 1 }
+        /^<!-- end -->/ { skip = 0 }
+        !skip && !/^<!-- table -->/ { print }' "$here/README.md" >"$out/README.md"
+    cp "$out/README.md" "$here/README.md"
+fi
+if [ ${#exceeded[@]} -gt 0 ]; then
+    printf 'over budget: %s\n' "${exceeded[@]}" >&2
+    exit 1
+fi

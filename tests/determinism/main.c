@@ -1,0 +1,49 @@
+/* Prints a digest of everything that the library computes, one line a group: the same text on every target. */
+#include "digest.h"
+#include "inputs.h"
+#include "stages.h"
+
+#include "board.h"
+
+uint64_t workspace[OFC_SEGMENT_WORKSPACE_SIZE(WIDTH, HEIGHT) / sizeof(uint64_t)];
+const size_t workspace_bytes = sizeof workspace;
+float normals[PIXELS * 3];
+uint8_t marks[PIXELS];
+
+static void print(const char *scene, const char *group)
+{
+    char name[64];
+    int length = 0;
+    for (const char *letter = scene; *letter != 0; letter++)
+        name[length++] = *letter;
+    name[length++] = ':';
+    name[length++] = ' ';
+    for (const char *letter = group; *letter != 0; letter++)
+        name[length++] = *letter;
+    name[length] = 0;
+    digest_print(name);
+}
+
+int main(void)
+{
+    digest_constants();
+    digest_mathematics();
+    digest_rendering();
+    for (int i = 0; i < SCENES; i++) {
+        static const struct fitted nothing;
+        struct fitted fitted = nothing;
+        const ofc_image image = scenes[i].make();
+        mix_fit(&image, &fitted);
+        print(scenes[i].name, "fit");
+        mix_lights(&image, &fitted);
+        print(scenes[i].name, "lights");
+        mix_roads(&image, &fitted);
+        print(scenes[i].name, "roads");
+        mix_segments(&image, &fitted);
+        print(scenes[i].name, "segments and ranks");
+        mix_solve(&image, i);
+        print(scenes[i].name, "solve");
+    }
+    board_print("done\n");
+    return 0;
+}
