@@ -9,6 +9,7 @@
 use crate::ellipsoid::{Coefficients, quadratic_form};
 use crate::image::{Image, Usable, Window};
 use crate::location::Location;
+use crate::pixels::Pixels;
 
 /// Deviations below this are rounding of f32 colors: an exact fit accepts them all.
 const EXACT_FIT: f64 = 1e-5;
@@ -90,11 +91,11 @@ impl Inliers {
         usable & window.bits(|r, g, b| self.residual.contains(r, g, b) & self.norm.contains(r, g, b))
     }
 
-    /// How many inliers `image` holds.
+    /// How many inliers `pixels` hold.
     #[must_use]
-    pub fn count(&self, image: &Image) -> usize {
+    pub fn count(&self, pixels: &impl Pixels) -> usize {
         let mut count = 0;
-        image.for_each_window(|window| count += self.bits(window).count_ones() as usize);
+        pixels.for_each_window(|window| count += self.bits(window).count_ones() as usize);
         count
     }
 

@@ -24,6 +24,7 @@ pub mod mat3;
 pub mod normals;
 pub mod orientation;
 pub mod orthogonal;
+pub mod pixels;
 pub mod rank;
 pub mod regression;
 pub mod render;

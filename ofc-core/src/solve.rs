@@ -12,6 +12,7 @@ use crate::integrability;
 use crate::lmeds::{self, Fit, FitError, Method};
 use crate::location::{self, Location};
 use crate::orientation::{self, Orientation, RANK_THRESHOLD};
+use crate::pixels::Pixels;
 use crate::rank::{self, Rank};
 use crate::tilt::{TiltEstimator, Tilts};
 use heapless::Vec;
@@ -180,9 +181,52 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         .get_mut(..workspace_len(pixels, params.lmeds.sample_size))
         .ok_or(FitError::WorkspaceTooShort)?;
     let usable = params.usable(image);
+    let census = usable.count(image);
+    let fit = lmeds::fit(image, usable, &params.lmeds, workspace);
+    let mut solution = model(image, usable, census, fit, params, workspace)?;
+    if solution.outcome != Outcome::NoTilt {
+        return Ok(solution);
+    }
+    let inliers = solution.inliers;
+    solution.tilts = params.tilts.estimate(image, &inliers, workspace);
+    let (Some(Tilts { tilts, .. }), Some(ellipsoid)) = (solution.tilts, solution.ellipsoid) else {
+        return Ok(solution);
+    };
+    solution.choose(choose(image, &inliers, &ellipsoid, tilts, params, workspace));
+    Ok(solution)
+}
+
+impl Solution {
+    /// Ends with this choice of slants.
+    pub(crate) fn choose(&mut self, choice: Option<Choice>) {
+        self.outcome = match &choice {
+            None => Outcome::NoConsistentSlants,
+            Some(choice) if choice.orientation.rank < 3 => Outcome::RankDeficient,
+            Some(_) => Outcome::Solved,
+        };
+        self.choice = choice;
+    }
+}
+
+/// From the fit to the inliers: everything that the places of the pixels mean nothing to. The outcome is
+/// [`Outcome::NoTilt`] where that is what comes next.
+///
+/// # Errors
+/// Those of the fit but [`FitError::RankDeficient`], which is an outcome.
+///
+/// # Scratch
+/// Two `f32` a pixel.
+pub(crate) fn model(
+    pixels: &impl Pixels,
+    usable: Usable,
+    census: Census,
+    fit: Result<Fit, FitError>,
+    params: &Params,
+    workspace: &mut [f32],
+) -> Result<Solution, FitError> {
     let mut solution = Solution {
         outcome: Outcome::RankDeficient,
-        census: usable.count(image),
+        census,
         color_deviations: [0.0; 3],
         rank: None,
         fit: None,
@@ -193,11 +237,10 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         tilts: None,
         choice: None,
     };
-
-    let fit = match lmeds::fit(image, usable, &params.lmeds, workspace) {
+    let fit = match fit {
         Ok(fit) => fit,
         Err(FitError::RankDeficient { color_deviations }) => {
-            let rank = rank::rank(image, |window| usable.bits(window), None);
+            let rank = rank::rank(pixels, |window| usable.bits(window), None);
             return Ok(Solution { color_deviations, rank, ..solution });
         }
         Err(error) => return Err(error),
@@ -212,7 +255,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         Method::LeastMedian => fit.residual_deviation,
         Method::LeastSquares => fit.residual_deviation.min(fit.dispersion),
     };
-    solution.rank = rank::rank(image, bits, Some((fit.z(), deviation)));
+    solution.rank = rank::rank(pixels, bits, Some((fit.z(), deviation)));
     let share = if deviation < fit.residual_deviation { deviation / fit.residual_deviation } else { 1.0 };
     let noise = fit.noise_deviation * share;
     let is_determined = fit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * noise;
@@ -227,24 +270,13 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         solution.outcome = Outcome::RankDeficient;
         return Ok(solution);
     }
-    solution.norm_location = location::norms(image, &solution.inliers, &fit.z(), workspace);
+    solution.norm_location = location::norms(pixels, &solution.inliers, &fit.z(), workspace);
     if let Some(norms) = solution.norm_location {
         solution.inliers.norm = Band::norm(fit.z(), &norms, params.lmeds.rejection);
-        solution.inlier_count = solution.inliers.count(image);
+        solution.inlier_count = solution.inliers.count(pixels);
     }
 
     solution.outcome = Outcome::NoTilt;
-    let inliers = solution.inliers;
-    solution.tilts = params.tilts.estimate(image, &inliers, workspace);
-    let Some(Tilts { tilts, .. }) = solution.tilts else { return Ok(solution) };
-
-    solution.outcome = Outcome::NoConsistentSlants;
-    solution.choice = choose(image, &inliers, &ellipsoid, tilts, params, workspace);
-    match &solution.choice {
-        None => {}
-        Some(choice) if choice.orientation.rank < 3 => solution.outcome = Outcome::RankDeficient,
-        Some(_) => solution.outcome = Outcome::Solved,
-    }
     Ok(solution)
 }
 
