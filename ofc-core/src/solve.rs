@@ -289,33 +289,63 @@ fn choose(
     params: &Params,
     workspace: &mut [f32],
 ) -> Option<Choice> {
-    let orient = |slants| {
-        Orientation::new(orientation::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
-    };
-    let roots = constrained_slant::roots(tilts, ellipsoid.cosines);
-    let mut candidates = Vec::new();
-    for root in &roots {
-        let orientation = orient(root.slants);
-        let integral = if orientation.rank == 3 {
-            integrability::integral(image, |window| inliers.bits(window), &orientation.f_inverse)
-        } else {
-            None
-        };
-        let candidate = Candidate {
-            slants: root.slants,
-            branch: root.branch,
-            residual: root.residual,
-            integral: integral.map_or(f64::INFINITY, |integral| integral.mean),
-        };
-        // There are no more roots than candidates have room.
-        let _ = candidates.push(candidate);
+    let orient = |slants| orient(ellipsoid, slants, tilts, params);
+    let mut candidates = candidates(ellipsoid, tilts);
+    for candidate in &mut candidates {
+        let orientation = orient(candidate.slants);
+        if orientation.rank == 3 {
+            let integral =
+                integrability::integral(image, |window| inliers.bits(window), &orientation.f_inverse);
+            candidate.integral = integral.map_or(f64::INFINITY, |integral| integral.mean);
+        }
     }
-    let best = candidates.iter().enumerate().min_by(|(_, a), (_, b)| a.integral.total_cmp(&b.integral));
-    if let Some((chosen, &Candidate { slants, .. })) = best {
-        let orientation = orient(slants);
-        return Some(Choice { slants, source: SlantSource::Root, candidates, chosen, orientation });
+    if let Some(chosen) = most_integrable(&candidates) {
+        return chosen_root(candidates, chosen, orient);
     }
     let (slants, source) = fallback::slants(params.fallback, image, inliers, ellipsoid, tilts, workspace)?;
     let orientation = orient(slants);
     Some(Choice { slants, source, candidates, chosen: 0, orientation })
+}
+
+/// F from the lengths of its rows, their slants and tilts.
+pub(crate) fn orient(
+    ellipsoid: &Ellipsoid,
+    slants: [f64; 3],
+    tilts: [f64; 3],
+    params: &Params,
+) -> Orientation {
+    Orientation::new(orientation::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
+}
+
+/// The roots of eqs. 25, their integrals not known yet.
+pub(crate) fn candidates(ellipsoid: &Ellipsoid, tilts: [f64; 3]) -> Vec<Candidate, MAX_CANDIDATES> {
+    let mut candidates = Vec::new();
+    for root in &constrained_slant::roots(tilts, ellipsoid.cosines) {
+        let candidate = Candidate {
+            slants: root.slants,
+            branch: root.branch,
+            residual: root.residual,
+            integral: f64::INFINITY,
+        };
+        // There are no more roots than candidates have room.
+        let _ = candidates.push(candidate);
+    }
+    candidates
+}
+
+/// Which candidate has the least integral.
+pub(crate) fn most_integrable(candidates: &[Candidate]) -> Option<usize> {
+    let least =
+        |(_, a): &(usize, &Candidate), (_, b): &(usize, &Candidate)| a.integral.total_cmp(&b.integral);
+    candidates.iter().enumerate().min_by(least).map(|(chosen, _)| chosen)
+}
+
+/// The choice of this root.
+pub(crate) fn chosen_root(
+    candidates: Vec<Candidate, MAX_CANDIDATES>,
+    chosen: usize,
+    orient: impl Fn([f64; 3]) -> Orientation,
+) -> Option<Choice> {
+    let slants = candidates.get(chosen)?.slants;
+    Some(Choice { slants, source: SlantSource::Root, candidates, chosen, orientation: orient(slants) })
 }
