@@ -45,6 +45,12 @@ impl Block {
         self.top_bits & (self.bottom_bits >> 1) & self.own
     }
 
+    /// Inliers of the top row that belong to this block rather than to the next.
+    #[must_use]
+    pub const fn own_top(&self) -> u64 {
+        self.top_bits & self.own
+    }
+
     /// Cells of four inliers.
     #[must_use]
     pub const fn cells(&self) -> u64 {

@@ -234,6 +234,21 @@ impl<'a> Image<'a> {
         self.sample
     }
 
+    /// Row `y` alone, with its mask, as a picture of height 1; `None` below the last row.
+    #[must_use]
+    pub fn row(&self, y: usize) -> Option<Self> {
+        if y >= self.height {
+            return None;
+        }
+        let start = y * self.row_stride;
+        let channels = self.channels.map(|channel| channel.get(start..).unwrap_or_default());
+        let mask = self.mask.map(|mask| Mask {
+            bytes: mask.bytes.get(y * mask.row_stride..).unwrap_or_default(),
+            row_stride: mask.row_stride,
+        });
+        Some(Self { channels, height: 1, mask, ..*self })
+    }
+
     /// Reads up to [`WINDOW`] pixels of row `y` from column `x` on, fewer at the end of the row and none beyond the
     /// picture.
     pub fn read(&self, x: usize, y: usize, window: &mut Window) {

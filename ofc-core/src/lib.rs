@@ -33,5 +33,6 @@ pub mod segment;
 pub mod select;
 pub mod slant;
 pub mod solve;
+pub mod stream;
 pub mod student_t;
 pub mod tilt;

@@ -213,6 +213,17 @@ pub fn fit(image: &Image, usable: Usable, params: &Params, workspace: &mut [f32]
     judge(image, usable, census.usable, scale, scaled, params, workspace)
 }
 
+/// The scaled z that `subsets` find among these scaled colors, channels apart; `None` when none determines one. `residuals`
+/// is room for one of each color.
+pub(crate) fn search(
+    [red, green, blue]: [&[f32]; 3],
+    residuals: &mut [f32],
+    subsets: u32,
+    rng: &mut Rng,
+) -> Option<Coefficients> {
+    Sample { red, green, blue, residuals }.best(subsets, rng)
+}
+
 /// Whether there are enough usable pixels for a fit, out of `pixels`.
 pub(crate) fn enough(census: &Census, pixels: usize) -> Result<(), FitError> {
     if census.usable >= MIN_PIXELS {

@@ -41,12 +41,20 @@ pub trait Pixels {
 
     /// The sum of the squared second differences along rows of neighbouring selected pixels, over the three channels, and
     /// how many triples of pixels it is a sum over.
-    #[inline(never)]
     fn second_differences(&self, selected: impl Fn(&Window) -> u64) -> (f64, u64) {
-        let (mut sum, mut count) = (0.0, 0_u64);
-        self.for_each_window(|window| second_differences(window, selected(window), &mut sum, &mut count));
-        (sum, count)
+        sum_second_differences(self, selected)
     }
+}
+
+/// [`Pixels::second_differences`], window by window.
+#[inline(never)]
+pub(crate) fn sum_second_differences(
+    pixels: &(impl Pixels + ?Sized),
+    selected: impl Fn(&Window) -> u64,
+) -> (f64, u64) {
+    let (mut sum, mut count) = (0.0, 0_u64);
+    pixels.for_each_window(|window| second_differences(window, selected(window), &mut sum, &mut count));
+    (sum, count)
 }
 
 /// Adds the second differences of one window's `bits`.

@@ -6,7 +6,7 @@ pub use fallback::SlantFallback;
 
 use crate::constrained_slant::{self, MAX_CANDIDATES};
 use crate::ellipsoid::{self, Ellipsoid};
-use crate::image::{Census, Image, Usable, Window};
+use crate::image::{Census, Image, Usable};
 use crate::inliers::{Band, Inliers};
 use crate::integrability;
 use crate::lmeds::{self, Fit, FitError, Method};
@@ -183,7 +183,8 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let usable = params.usable(image);
     let census = usable.count(image);
     let fit = lmeds::fit(image, usable, &params.lmeds, workspace);
-    let mut solution = model(image, usable, census, fit, params, workspace)?;
+    let mut solution = Solution::unsolved(census, usable);
+    solution.model(image, fit, params, workspace)?;
     if solution.outcome != Outcome::NoTilt {
         return Ok(solution);
     }
@@ -197,6 +198,81 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
 }
 
 impl Solution {
+    /// What is known before the fit.
+    pub(crate) fn unsolved(census: Census, usable: Usable) -> Self {
+        Self {
+            outcome: Outcome::RankDeficient,
+            census,
+            color_deviations: [0.0; 3],
+            rank: None,
+            fit: None,
+            norm_location: None,
+            inliers: Inliers::none(usable),
+            inlier_count: 0,
+            ellipsoid: None,
+            tilts: None,
+            choice: None,
+        }
+    }
+
+    /// From the fit to the inliers: everything that the places of the pixels mean nothing to. The outcome is
+    /// [`Outcome::NoTilt`] where tilts come next.
+    ///
+    /// # Errors
+    /// Those of the fit but [`FitError::RankDeficient`], which is an outcome.
+    ///
+    /// # Scratch
+    /// Two `f32` a pixel.
+    pub(crate) fn model(
+        &mut self,
+        pixels: &impl Pixels,
+        fit: Result<Fit, FitError>,
+        params: &Params,
+        workspace: &mut [f32],
+    ) -> Result<(), FitError> {
+        let usable = self.inliers.usable;
+        let fit = match fit {
+            Ok(fit) => fit,
+            Err(FitError::RankDeficient { color_deviations }) => {
+                self.color_deviations = color_deviations;
+                self.rank = rank::rank(pixels, |window| usable.bits(window), None);
+                return Ok(());
+            }
+            Err(error) => return Err(error),
+        };
+        self.fit = Some(fit);
+        self.color_deviations = fit.color_deviations;
+        self.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
+        self.inlier_count = fit.inliers;
+        // Outliers that least squares keeps are no noise: the robust dispersion leaves them out.
+        let deviation = match params.lmeds.method {
+            Method::LeastMedian => fit.residual_deviation,
+            Method::LeastSquares => fit.residual_deviation.min(fit.dispersion),
+        };
+        self.rank = rank::rank(pixels, |window| self.inliers.bits(window), Some((fit.z(), deviation)));
+        let share = if deviation < fit.residual_deviation { deviation / fit.residual_deviation } else { 1.0 };
+        let noise = fit.noise_deviation * share;
+        let is_determined = fit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * noise;
+        if !is_determined || self.rank.is_some_and(|rank| rank.colors < 3) {
+            return Ok(());
+        }
+
+        self.outcome = Outcome::NotPositiveDefinite;
+        let Ok(ellipsoid) = ellipsoid::decompose(&fit.z()) else { return Ok(()) };
+        self.ellipsoid = Some(ellipsoid);
+        if self.rank.is_some_and(|rank| !rank.is_full()) {
+            self.outcome = Outcome::RankDeficient;
+            return Ok(());
+        }
+        self.norm_location = location::norms(pixels, &self.inliers, &fit.z(), workspace);
+        if let Some(norms) = self.norm_location {
+            self.inliers.norm = Band::norm(fit.z(), &norms, params.lmeds.rejection);
+            self.inlier_count = self.inliers.count(pixels);
+        }
+        self.outcome = Outcome::NoTilt;
+        Ok(())
+    }
+
     /// Ends with this choice of slants.
     pub(crate) fn choose(&mut self, choice: Option<Choice>) {
         self.outcome = match &choice {
@@ -206,78 +282,6 @@ impl Solution {
         };
         self.choice = choice;
     }
-}
-
-/// From the fit to the inliers: everything that the places of the pixels mean nothing to. The outcome is
-/// [`Outcome::NoTilt`] where that is what comes next.
-///
-/// # Errors
-/// Those of the fit but [`FitError::RankDeficient`], which is an outcome.
-///
-/// # Scratch
-/// Two `f32` a pixel.
-pub(crate) fn model(
-    pixels: &impl Pixels,
-    usable: Usable,
-    census: Census,
-    fit: Result<Fit, FitError>,
-    params: &Params,
-    workspace: &mut [f32],
-) -> Result<Solution, FitError> {
-    let mut solution = Solution {
-        outcome: Outcome::RankDeficient,
-        census,
-        color_deviations: [0.0; 3],
-        rank: None,
-        fit: None,
-        norm_location: None,
-        inliers: Inliers::none(usable),
-        inlier_count: 0,
-        ellipsoid: None,
-        tilts: None,
-        choice: None,
-    };
-    let fit = match fit {
-        Ok(fit) => fit,
-        Err(FitError::RankDeficient { color_deviations }) => {
-            let rank = rank::rank(pixels, |window| usable.bits(window), None);
-            return Ok(Solution { color_deviations, rank, ..solution });
-        }
-        Err(error) => return Err(error),
-    };
-    solution.fit = Some(fit);
-    solution.color_deviations = fit.color_deviations;
-    solution.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
-    solution.inlier_count = fit.inliers;
-    let bits = |window: &Window| solution.inliers.bits(window);
-    // Outliers that least squares keeps are no noise: the robust dispersion leaves them out.
-    let deviation = match params.lmeds.method {
-        Method::LeastMedian => fit.residual_deviation,
-        Method::LeastSquares => fit.residual_deviation.min(fit.dispersion),
-    };
-    solution.rank = rank::rank(pixels, bits, Some((fit.z(), deviation)));
-    let share = if deviation < fit.residual_deviation { deviation / fit.residual_deviation } else { 1.0 };
-    let noise = fit.noise_deviation * share;
-    let is_determined = fit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * noise;
-    if !is_determined || solution.rank.is_some_and(|rank| rank.colors < 3) {
-        return Ok(solution);
-    }
-
-    solution.outcome = Outcome::NotPositiveDefinite;
-    let Ok(ellipsoid) = ellipsoid::decompose(&fit.z()) else { return Ok(solution) };
-    solution.ellipsoid = Some(ellipsoid);
-    if solution.rank.is_some_and(|rank| !rank.is_full()) {
-        solution.outcome = Outcome::RankDeficient;
-        return Ok(solution);
-    }
-    solution.norm_location = location::norms(pixels, &solution.inliers, &fit.z(), workspace);
-    if let Some(norms) = solution.norm_location {
-        solution.inliers.norm = Band::norm(fit.z(), &norms, params.lmeds.rejection);
-        solution.inlier_count = solution.inliers.count(pixels);
-    }
-
-    solution.outcome = Outcome::NoTilt;
-    Ok(solution)
 }
 
 /// The candidate slants for these tilts, and the one whose normals are most integrable (section 3.4, steps 4-8).

@@ -19,7 +19,7 @@ pub struct Tilts {
 
 impl Tilts {
     /// Tilts that come from no gradient.
-    const fn alone(tilts: [f64; 3]) -> Self {
+    pub(crate) const fn alone(tilts: [f64; 3]) -> Self {
         Self { tilts, gradients: [[0.0; 2]; 3] }
     }
 }

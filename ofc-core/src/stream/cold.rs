@@ -1,0 +1,227 @@
+//! The three passes of a cold start.
+
+use super::strata::{Sampled, Slots, Strata};
+use super::{Memory, Pass, State, StreamError, room};
+use crate::cells::{Block, for_each_block_of_rows};
+use crate::constrained_slant;
+use crate::image::{Census, Image, WINDOW, Window, for_each_bit};
+use crate::inliers::Inliers;
+use crate::integrability;
+use crate::lmeds::{self, Method};
+use crate::pixels::second_differences;
+use crate::rng::Rng;
+use crate::solve::{
+    Choice, Outcome, SlantFallback, SlantSource, Solution, candidates, chosen_root, most_integrable, orient,
+};
+use crate::tilt::{TiltEstimator, Tilts, pentland};
+
+impl State {
+    pub(super) fn begin_colors(&mut self) {
+        let lmeds = self.params.solve.lmeds;
+        self.strata = Strata::new(lmeds.seed, room(self.width, self.height, lmeds.sample_size));
+        self.census = Census::default();
+        self.second_differences = (0.0, 0);
+    }
+
+    #[inline(never)]
+    pub(super) fn row_colors(&mut self, y: usize, row: &Image, memory: &mut Memory) {
+        let Some((mut slots, _)) = self.slots(memory) else { return };
+        let usable = self.usable();
+        row.for_each_window(|window| {
+            let bits = usable.count_window(window, &mut self.census);
+            let (sum, count) = &mut self.second_differences;
+            second_differences(window, bits, sum, count);
+            for_each_bit(bits, |i| self.strata.offer(window, y, i, &mut slots));
+        });
+    }
+
+    /// The sample's room, and that behind it.
+    fn slots<'a>(&self, memory: &'a mut Memory) -> Option<(Slots<'a>, &'a mut [f32])> {
+        let room = room(self.width, self.height, self.params.solve.lmeds.sample_size);
+        let (red, rest) = memory.values.split_at_mut_checked(room)?;
+        let (green, rest) = rest.split_at_mut_checked(room)?;
+        let (blue, rest) = rest.split_at_mut_checked(room)?;
+        Some((Slots { colors: [red, green, blue], places: memory.places }, rest))
+    }
+
+    #[inline(never)]
+    pub(super) fn end_colors(&mut self, memory: &mut Memory) -> Result<(), StreamError> {
+        let usable = self.usable();
+        self.solution = Solution::unsolved(self.census, usable);
+        lmeds::enough(&self.census, self.width * self.height).map_err(StreamError::Fit)?;
+        let params = self.params.solve;
+        let count = self.strata.len();
+        let (Slots { colors, places }, workspace) = self.slots(memory).ok_or(StreamError::TooShort)?;
+        let mut colors = colors.map(|channel| channel.get_mut(..count).unwrap_or_default());
+        let places = if self.strata.is_whole() { places.get(..count) } else { None }.unwrap_or_default();
+        let scale = lmeds::reciprocal_power_of_two(self.census.largest);
+        let searched = match params.lmeds.method {
+            Method::LeastMedian => {
+                // Where it was before its colors were drawn.
+                let mut rng = Rng::new(params.lmeds.seed);
+                rng.skip(count as u64);
+                multiply(&mut colors, scale);
+                let subsets = params.lmeds.subset_count().unwrap_or(0);
+                let residuals = workspace.get_mut(..count).unwrap_or_default();
+                let found =
+                    lmeds::search(colors.each_ref().map(|channel| &**channel), residuals, subsets, &mut rng);
+                multiply(&mut colors, 1.0 / scale);
+                Some(found)
+            }
+            Method::LeastSquares => None,
+        };
+        let pixels = Sampled {
+            colors: colors.map(|channel| &*channel),
+            places,
+            format: self.format,
+            second_differences: self.second_differences,
+        };
+        let scaled = searched.unwrap_or_else(|| lmeds::least_squares(&pixels, usable, scale));
+        let fit = lmeds::judge(&pixels, usable, count, scale, scaled, &params.lmeds, workspace);
+        self.solution.model(&pixels, fit, &params, workspace).map_err(StreamError::Fit)?;
+        self.go_on(self.solution.outcome == Outcome::NoTilt, Pass::Tilts);
+        Ok(())
+    }
+
+    pub(super) fn begin_tilts(&mut self) {
+        self.differences = pentland::Sums::default();
+        self.inlier_count = 0;
+    }
+
+    #[inline(never)]
+    pub(super) fn row_tilts(&mut self, y: usize, row: &Image, memory: &mut Memory) {
+        if y > 0 {
+            self.tilts_of_blocks(Some(row), memory);
+        }
+        keep(row, memory);
+    }
+
+    /// The blocks of the row before and this one.
+    fn tilts_of_blocks(&mut self, row: Option<&Image>, memory: &Memory) {
+        let (differences, count) = (&mut self.differences, &mut self.inlier_count);
+        for_each_block_of_stream(self.width, &self.solution.inliers, row, memory, |block| {
+            differences.add(block);
+            *count += block.own_top().count_ones() as usize;
+        });
+    }
+
+    #[inline(never)]
+    pub(super) fn end_tilts(&mut self, memory: &mut Memory) {
+        self.tilts_of_blocks(None, memory);
+        let params = self.params.solve;
+        self.solution.inlier_count = self.inlier_count;
+        self.solution.tilts = match params.tilts {
+            TiltEstimator::Given(tilts) => Some(Tilts::alone(tilts)),
+            _ => self.differences.tilts(),
+        };
+        let (Some(Tilts { tilts, .. }), Some(ellipsoid)) = (self.solution.tilts, self.solution.ellipsoid)
+        else {
+            return self.go_on(false, Pass::Colors);
+        };
+        let candidates = candidates(&ellipsoid, tilts);
+        if candidates.is_empty() {
+            let choice = (params.fallback == SlantFallback::LeastSquares).then(|| {
+                let slants = constrained_slant::least_squares(tilts, ellipsoid.cosines).slants;
+                let orientation = orient(&ellipsoid, slants, tilts, &params);
+                Choice { slants, source: SlantSource::LeastSquares, candidates, chosen: 0, orientation }
+            });
+            self.solution.choose(choice);
+            return self.go_on(false, Pass::Colors);
+        }
+        for (inverse, candidate) in self.candidates.iter_mut().zip(&candidates) {
+            let orientation = orient(&ellipsoid, candidate.slants, tilts, &params);
+            *inverse = (orientation.rank == 3).then_some(orientation.f_inverse);
+        }
+        // Until the next pass the first one is as good as any.
+        self.solution.choice =
+            chosen_root(candidates, 0, |slants| orient(&ellipsoid, slants, tilts, &params));
+        self.go_on(true, Pass::Slants);
+    }
+
+    pub(super) fn begin_slants(&mut self) {
+        self.integrals.fill(integrability::Sum::default());
+    }
+
+    #[inline(never)]
+    pub(super) fn row_slants(&mut self, y: usize, row: &Image, memory: &mut Memory) {
+        if y > 0 {
+            let (candidates, integrals) = (&self.candidates, &mut self.integrals);
+            for_each_block_of_stream(self.width, &self.solution.inliers, Some(row), memory, |block| {
+                for (integral, inverse) in integrals.iter_mut().zip(candidates) {
+                    if let Some(inverse) = inverse {
+                        integral.add(block, inverse);
+                    }
+                }
+            });
+        }
+        keep(row, memory);
+    }
+
+    #[inline(never)]
+    pub(super) fn end_slants(&mut self) {
+        let (Some(Choice { mut candidates, .. }), Some(Tilts { tilts, .. }), Some(ellipsoid)) =
+            (self.solution.choice.take(), self.solution.tilts, self.solution.ellipsoid)
+        else {
+            return self.go_on(false, Pass::Colors);
+        };
+        for ((candidate, inverse), integral) in
+            candidates.iter_mut().zip(&self.candidates).zip(&self.integrals)
+        {
+            let mean = inverse.and_then(|_| integral.mean());
+            candidate.integral = mean.map_or(f64::INFINITY, |integral| integral.mean);
+        }
+        let params = self.params.solve;
+        let chosen = most_integrable(&candidates).unwrap_or(0);
+        self.solution
+            .choose(chosen_root(candidates, chosen, |slants| orient(&ellipsoid, slants, tilts, &params)));
+        self.go_on(false, Pass::Colors);
+    }
+}
+
+/// A power of two times all colors, so that nothing is lost.
+fn multiply(colors: &mut [&mut [f32]; 3], factor: f64) {
+    for value in colors.iter_mut().flat_map(|channel| channel.iter_mut()) {
+        *value = (f64::from(*value) * factor) as f32;
+    }
+}
+
+/// Keeps a row for the blocks that it makes with the next one: channels apart, NaN where the mask leaves a pixel out.
+fn keep(row: &Image, memory: &mut Memory) {
+    let width = row.width();
+    row.for_each_window(|window| {
+        for (channel, color) in memory.values.chunks_exact_mut(width).zip(&window.color) {
+            let out = channel.get_mut(window.x..).unwrap_or_default();
+            for (i, (out, &value)) in out.iter_mut().zip(color).take(window.len).enumerate() {
+                *out = if window.masked >> i & 1 == 1 { value } else { f32::NAN };
+            }
+        }
+    });
+}
+
+/// The pixels that are kept of the row before, from column `x` on.
+fn kept(x: usize, width: usize, memory: &Memory, window: &mut Window) {
+    window.x = x;
+    window.len = width.saturating_sub(x).min(WINDOW);
+    window.masked = if window.len == WINDOW { u64::MAX } else { (1 << window.len) - 1 };
+    for (channel, out) in memory.values.chunks_exact(width).zip(&mut window.color) {
+        for (out, &value) in out.iter_mut().zip(channel.get(x..).unwrap_or_default()) {
+            *out = value;
+        }
+    }
+}
+
+/// Visits the blocks of the row before and this one, or nothing below the last row.
+fn for_each_block_of_stream(
+    width: usize,
+    inliers: &Inliers,
+    row: Option<&Image>,
+    memory: &Memory,
+    visit: impl FnMut(&Block),
+) {
+    let read = |x, window: &mut Window, lower| match (lower, row) {
+        (0, _) => kept(x, width, memory, window),
+        (_, Some(row)) => row.read(x, 0, window),
+        (_, None) => (window.len, window.masked) = (0, 0),
+    };
+    for_each_block_of_rows(width, &mut Block::default(), read, |window| inliers.bits(window), visit);
+}
