@@ -1,12 +1,14 @@
 //! A camera's rows instead of a picture: the pipeline of [`solve`](crate::solve) over one row at a time.
 //!
-//! A cold start takes three passes over a frame, or over consecutive frames of a scene at rest. The pass over its colors
-//! keeps a stratified sample, and ends with the model: everything that medians and fits are for is computed on the
+//! A cold start takes two or three passes over a frame, or over consecutive frames of a scene at rest. The pass over its
+//! colors keeps a stratified sample, and ends with the model: everything that medians and fits are for is computed on the
 //! sample. The pass over its tilts sums the differences between neighbouring inliers, of this row and the one before it,
-//! and ends with the candidate slants. The pass over its slants sums the integral (15) of all candidates at once, and
-//! ends with F. Normals and inliers of any row can then be had. With a model, one pass refines it.
+//! and ends with F where there is one candidate for the slants. Where there are several, a pass over the slants sums the
+//! integral (15) of all of them at once, and ends with F. Then normals and inliers of any row can be had, and one pass
+//! over a later frame refines the model.
 //!
-//! Where the sample holds every usable pixel the result is that of [`solve`](crate::solve::solve), bit for bit.
+//! Where the sample holds every usable pixel the result is that of [`solve`](crate::solve::solve), bit for bit (but the
+//! integral of a lone candidate, which is not computed: infinite).
 
 mod cold;
 mod output;

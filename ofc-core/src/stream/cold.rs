@@ -119,22 +119,29 @@ impl State {
             return self.go_on(false, Pass::Colors);
         };
         let candidates = candidates(&ellipsoid, tilts);
-        if candidates.is_empty() {
-            let choice = (params.fallback == SlantFallback::LeastSquares).then(|| {
-                let slants = constrained_slant::least_squares(tilts, ellipsoid.cosines).slants;
-                let orientation = orient(&ellipsoid, slants, tilts, &params);
-                Choice { slants, source: SlantSource::LeastSquares, candidates, chosen: 0, orientation }
-            });
-            self.solution.choose(choice);
-            return self.go_on(false, Pass::Colors);
+        let orient = |slants| orient(&ellipsoid, slants, tilts, &params);
+        match candidates.len() {
+            0 => {
+                let choice = (params.fallback == SlantFallback::LeastSquares).then(|| {
+                    let slants = constrained_slant::least_squares(tilts, ellipsoid.cosines).slants;
+                    let orientation = orient(slants);
+                    Choice { slants, source: SlantSource::LeastSquares, candidates, chosen: 0, orientation }
+                });
+                self.solution.choose(choice);
+                return self.go_on(false, Pass::Colors);
+            }
+            1 => {
+                self.solution.choose(chosen_root(candidates, 0, orient));
+                return self.go_on(false, Pass::Colors);
+            }
+            _ => {}
         }
         for (inverse, candidate) in self.candidates.iter_mut().zip(&candidates) {
-            let orientation = orient(&ellipsoid, candidate.slants, tilts, &params);
+            let orientation = orient(candidate.slants);
             *inverse = (orientation.rank == 3).then_some(orientation.f_inverse);
         }
         // Until the next pass the first one is as good as any.
-        self.solution.choice =
-            chosen_root(candidates, 0, |slants| orient(&ellipsoid, slants, tilts, &params));
+        self.solution.choice = chosen_root(candidates, 0, orient);
         self.go_on(true, Pass::Slants);
     }
 

@@ -175,3 +175,53 @@ impl Pixels for Sampled<'_> {
         sum_second_differences(self, selected)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    /// Which of `count` pixels, whose color is their number, are kept in `capacity` places, and the stride.
+    fn kept(count: usize, capacity: usize, seed: u64) -> (Vec<usize>, usize) {
+        let (mut red, mut green, mut blue) =
+            (std::vec![9e9; capacity], std::vec![9e9; capacity], std::vec![9e9; capacity]);
+        let mut places = std::vec![0; capacity];
+        let mut slots = Slots { colors: [&mut red, &mut green, &mut blue], places: &mut places };
+        let mut strata = Strata::new(seed, capacity);
+        let mut window = Window::new();
+        for number in 0..count {
+            window.color = [[number as f32; WINDOW]; 3];
+            strata.offer(&window, 0, number % WINDOW, &mut slots);
+        }
+        assert_eq!(red, blue);
+        (red.iter().take(strata.len()).map(|&number| number as usize).collect(), strata.stride as usize)
+    }
+
+    #[test]
+    fn one_pixel_of_each_stratum() {
+        for capacity in [24, 25, 30, 31] {
+            for count in 0..300 {
+                let (numbers, stride) = kept(count, capacity, count as u64);
+                for (stratum, number) in numbers.iter().enumerate() {
+                    assert_eq!(number / stride, stratum, "{count} in {capacity}: {numbers:?}");
+                }
+                // Only the last stratum may still be without a pixel.
+                assert!(numbers.len() >= count / stride && numbers.len() <= count.div_ceil(stride));
+                assert!(stride == 1 || numbers.len() >= capacity / 2);
+                assert_eq!(stride == 1, count <= capacity);
+            }
+        }
+    }
+
+    #[test]
+    fn every_pixel_is_as_likely() {
+        let mut counts = [0; 190];
+        for seed in 0..4000 {
+            for number in kept(190, 25, seed).0 {
+                counts[number] += 1;
+            }
+        }
+        // 4000 / 8 each, with a deviation of 21.
+        assert!(counts[..184].iter().all(|count| (400..600).contains(count)), "{counts:?}");
+    }
+}
