@@ -212,7 +212,7 @@ mod tests {
         for root in found {
             assert!(root.residual < 1e-14);
             let value = curve(root.branch, root.slants[0], tilts, cosines).unwrap();
-            assert!((value - root.slants[0]).abs() < 1e-12);
+            assert!((value.f - root.slants[0]).abs() < 1e-12);
         }
     }
 
