@@ -285,11 +285,11 @@ pub(crate) fn judge(
         band,
         coefficients: refit.coefficients,
         residual_deviation: refit.residual_deviation,
-        color_deviations: deviations(&refit.moments, scale),
+        color_deviations: refit.color_deviations,
         noise_deviation: refit.noise_deviation,
         degenerate_noise_deviation: refit.degenerate_noise_deviation,
         usable: usable_count,
-        inliers: refit.moments.count as usize,
+        inliers: refit.count as usize,
         subsets,
     })
 }
@@ -332,49 +332,70 @@ fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
     symmetric_eigen(&moments.second_moments()).values.map(|square| sqrt(square.max(0.0)) / scale)
 }
 
-struct Refit {
-    coefficients: [Estimate; TERMS],
-    residual_deviation: f64,
-    noise_deviation: f64,
-    degenerate_noise_deviation: f64,
-    moments: Moments,
+/// Least squares over inliers.
+pub(crate) struct Refit {
+    pub coefficients: [Estimate; TERMS],
+    pub residual_deviation: f64,
+    pub noise_deviation: f64,
+    pub degenerate_noise_deviation: f64,
+    pub color_deviations: [f64; 3],
+    pub count: u32,
+}
+
+impl Refit {
+    /// From the sums of colors times `scale`; `residual_sum` gives the sum of squares about the z of pixel values, and that
+    /// of scaled colors.
+    pub fn new(
+        moments: &Moments,
+        scale: f64,
+        confidence: f64,
+        residual_sum: impl FnOnce(&Coefficients, &Coefficients) -> f64,
+    ) -> Option<Self> {
+        if (moments.count as usize) < MIN_PIXELS {
+            return None;
+        }
+        let fit = moments.solve()?;
+        let to_pixel_values = scale * scale;
+        let residual_sum = residual_sum(&fit.coefficients.map(|c| c * to_pixel_values), &fit.coefficients);
+        let variance = residual_sum / (f64::from(moments.count) - TERMS as f64);
+        let coefficients =
+            regression::estimates(&fit, variance, moments.count, confidence).map(|e| Estimate {
+                value: e.value * to_pixel_values,
+                standard_error: e.standard_error * to_pixel_values,
+                low: e.low * to_pixel_values,
+                high: e.high * to_pixel_values,
+                ..e
+            });
+        Some(Self {
+            coefficients,
+            residual_deviation: sqrt(variance),
+            noise_deviation: moments.noise(&fit.coefficients, residual_sum) / scale,
+            degenerate_noise_deviation: moments.degenerate_noise(&fit) / scale,
+            color_deviations: deviations(moments, scale),
+            count: moments.count,
+        })
+    }
 }
 
 /// The least-squares fit to the inliers with its statistics, in pixel values.
 fn reweighted(pixels: &impl Pixels, inliers: &Inliers, scale: f64, confidence: f64) -> Option<Refit> {
     let moments = moments(pixels, inliers, scale);
-    if (moments.count as usize) < MIN_PIXELS {
-        return None;
-    }
-    let fit = moments.solve()?;
-    let to_pixel_values = scale * scale;
-    let z = fit.coefficients.map(|c| c * to_pixel_values);
-    let mut residual_sum = 0.0;
-    pixels.for_each_window(|window| {
-        let mut sum = 0.0;
-        for_each_bit(inliers.bits(window), |i| {
-            let [r, g, b] = window.pixel(i);
-            let residual = quadratic_form(&z, r, g, b) - 1.0;
-            sum += residual * residual;
+    let mut refit = Refit::new(&moments, scale, confidence, |z, _| {
+        let mut residual_sum = 0.0;
+        pixels.for_each_window(|window| {
+            let mut sum = 0.0;
+            for_each_bit(inliers.bits(window), |i| {
+                let [r, g, b] = window.pixel(i);
+                let residual = quadratic_form(z, r, g, b) - 1.0;
+                sum += residual * residual;
+            });
+            residual_sum += sum;
         });
-        residual_sum += sum;
-    });
-    let variance = residual_sum / (f64::from(moments.count) - TERMS as f64);
-    let coefficients = regression::estimates(&fit, variance, moments.count, confidence).map(|e| Estimate {
-        value: e.value * to_pixel_values,
-        standard_error: e.standard_error * to_pixel_values,
-        low: e.low * to_pixel_values,
-        high: e.high * to_pixel_values,
-        ..e
-    });
+        residual_sum
+    })?;
     let rounding = smallest_step(pixels, inliers) * ROUNDING;
-    Some(Refit {
-        coefficients,
-        residual_deviation: sqrt(variance),
-        noise_deviation: (moments.noise(&fit.coefficients, residual_sum) / scale).max(rounding),
-        degenerate_noise_deviation: moments.degenerate_noise(&fit) / scale,
-        moments,
-    })
+    refit.noise_deviation = refit.noise_deviation.max(rounding);
+    Some(refit)
 }
 
 /// 2^-k for the k that brings `largest` into [1, 2).

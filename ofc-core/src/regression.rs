@@ -157,6 +157,15 @@ impl Moments {
         if spread > 0.0 { sqrt(z.dot(&(self.normal_matrix() * z)).max(0.0) / spread) } else { 0.0 }
     }
 
+    /// The sum of squared residuals about z, from the sums alone: good to the rounding of `count`.
+    #[must_use]
+    pub fn residual_sum(&self, z: &Coefficients) -> f64 {
+        let [rr, gg, bb, rg, rb, gb] = self.quadratic;
+        let z = Vector6::from(*z);
+        let right = Vector6::new(rr, gg, bb, 2.0 * rg, 2.0 * rb, 2.0 * gb);
+        (z.dot(&(self.normal_matrix() * z - right * 2.0)) + f64::from(self.count)).max(0.0)
+    }
+
     /// The least-squares z, and (M^T M)^-1; `None` when the colors do not determine z.
     #[must_use]
     pub fn solve(&self) -> Option<LeastSquares> {

@@ -20,7 +20,7 @@ use heapless::Vec;
 /// The noise that would make a degenerate scene look like this one must be so many times the noise there is. Degenerate
 /// scenes (cylinders, planes, cones, ramps, mixtures of colors, with and without noise) come to 0.2-1.1, photographs
 /// that give good normals to 1.9-6.7; at 1.5 nearly half of a coefficient of C can be bias.
-const SMALLEST_NOISE_MARGIN: f64 = 1.5;
+pub(crate) const SMALLEST_NOISE_MARGIN: f64 = 1.5;
 
 /// What to do, with the defaults of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,7 +184,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let census = usable.count(image);
     let fit = lmeds::fit(image, usable, &params.lmeds, workspace);
     let mut solution = Solution::unsolved(census, usable);
-    solution.model(image, fit, params, workspace)?;
+    solution.model(image, &fit, params, workspace)?;
     if solution.outcome != Outcome::NoTilt {
         return Ok(solution);
     }
@@ -226,13 +226,13 @@ impl Solution {
     pub(crate) fn model(
         &mut self,
         pixels: &impl Pixels,
-        fit: Result<Fit, FitError>,
+        fit: &Result<Fit, FitError>,
         params: &Params,
         workspace: &mut [f32],
     ) -> Result<(), FitError> {
         let usable = self.inliers.usable;
-        let fit = match fit {
-            Ok(fit) => fit,
+        let fit = match *fit {
+            Ok(ref fit) => fit,
             Err(FitError::RankDeficient { color_deviations }) => {
                 self.color_deviations = color_deviations;
                 self.rank = rank::rank(pixels, |window| usable.bits(window), None);
@@ -240,7 +240,7 @@ impl Solution {
             }
             Err(error) => return Err(error),
         };
-        self.fit = Some(fit);
+        self.fit = Some(*fit);
         self.color_deviations = fit.color_deviations;
         self.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
         self.inlier_count = fit.inliers;

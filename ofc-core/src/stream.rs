@@ -13,12 +13,16 @@
 mod cold;
 mod output;
 mod strata;
+mod warm;
+
+pub use warm::{Change, Drift};
 
 use crate::constrained_slant::MAX_CANDIDATES;
 use crate::image::{Census, Image, MAX_PIXELS, Sample, Usable};
 use crate::integrability;
 use crate::lmeds::{self, FitError, MIN_PIXELS};
 use crate::mat3::Mat3;
+use crate::regression::Moments;
 use crate::solve::{self, Outcome, SlantFallback, Solution};
 use crate::tilt::{TiltEstimator, pentland};
 use strata::Strata;
@@ -29,12 +33,15 @@ pub struct Params {
     /// The pipeline's. `lmeds.sample_size` is how many colors the sample has room for, at least 24, here 2048 by default;
     /// tilts are Pentland's or given, and without a root slants are refused or fitted by least squares.
     pub solve: solve::Params,
+    /// Where less than this share of the usable pixels has a residual that the model accepts, in [0, 1], a frame does not
+    /// refine it: a cold start is needed. Default 0.5, what least median of squares rests on.
+    pub smallest_share: f64,
 }
 
 impl Default for Params {
     fn default() -> Self {
         let lmeds = lmeds::Params { sample_size: 2048, ..lmeds::Params::default() };
-        Self { solve: solve::Params { lmeds, ..solve::Params::default() } }
+        Self { solve: solve::Params { lmeds, ..solve::Params::default() }, smallest_share: 0.5 }
     }
 }
 
@@ -43,6 +50,7 @@ impl Params {
     #[must_use]
     pub fn are_valid(&self) -> bool {
         self.solve.are_valid()
+            && (0.0..=1.0).contains(&self.smallest_share)
             // Merged strata leave half of the sample.
             && self.solve.lmeds.sample_size as usize >= 2 * MIN_PIXELS
             && matches!(self.solve.tilts, TiltEstimator::Pentland | TiltEstimator::Given(_))
@@ -59,8 +67,8 @@ pub enum Pass {
     Tilts,
     /// The choice among the candidate slants.
     Slants,
-    /// F is there.
-    Solved,
+    /// F is there: the frame refines it.
+    Refine,
 }
 
 /// Why a call did nothing.
@@ -74,8 +82,8 @@ pub enum StreamError {
     TooShort,
     /// No frame was begun.
     NoFrame,
-    /// The call is not for this pass.
-    WrongPass,
+    /// There is no F yet.
+    NotSolved,
     /// A row comes twice, or one before it is missing.
     RowOrder,
     /// All rows of the frame were there already.
@@ -134,6 +142,10 @@ pub struct State {
     inlier_count: usize,
     candidates: [Option<Mat3>; MAX_CANDIDATES],
     integrals: [integrability::Sum; MAX_CANDIDATES],
+    moments: Moments,
+    /// What colors are multiplied with before their moments are summed: a power of two.
+    scale: f64,
+    drift: Option<Drift>,
     solution: Solution,
 }
 
@@ -165,6 +177,9 @@ impl State {
             inlier_count: 0,
             candidates: [None; MAX_CANDIDATES],
             integrals: [integrability::Sum::default(); MAX_CANDIDATES],
+            moments: Moments::default(),
+            scale: 1.0,
+            drift: None,
             solution: Solution::unsolved(Census::default(), usable),
         })
     }
@@ -216,20 +231,17 @@ impl<'m> Stream<'m> {
         self.state.pass = Pass::Colors;
     }
 
-    /// Begins a frame. One that was not ended is forgotten.
-    ///
-    /// # Errors
-    /// [`StreamError::WrongPass`] where no pass is to come.
-    pub fn begin(&mut self) -> Result<Pass, StreamError> {
+    /// Begins a frame, and says what for. One that was not ended is forgotten.
+    pub fn begin(&mut self) -> Pass {
         let state = &mut *self.state;
         match state.pass {
             Pass::Colors => state.begin_colors(),
             Pass::Tilts => state.begin_tilts(),
             Pass::Slants => state.begin_slants(),
-            Pass::Solved => return Err(StreamError::WrongPass),
+            Pass::Refine => state.begin_refine(),
         }
         state.row = Some(0);
-        Ok(state.pass)
+        state.pass
     }
 
     /// Takes row `y` of the frame, a picture of height 1 that may have a mask.
@@ -251,14 +263,15 @@ impl<'m> Stream<'m> {
             Pass::Colors => state.row_colors(y, row, &mut self.memory),
             Pass::Tilts => state.row_tilts(y, row, &mut self.memory),
             Pass::Slants => state.row_slants(y, row, &mut self.memory),
-            Pass::Solved => return Err(StreamError::WrongPass),
+            Pass::Refine => state.row_refine(y, row, &mut self.memory),
         }
         state.row = Some(y + 1);
         Ok(())
     }
 
-    /// Ends a frame, and says which pass comes next: [`Pass::Colors`] where the model cannot be had, and
-    /// [`State::solution`] says why.
+    /// Ends a frame, and says which pass comes next. That is [`Pass::Colors`] where a cold start came to no F, and
+    /// [`State::solution`] says why, and where too few pixels fit the model for it to be refined, as [`State::drift`] says.
+    /// The old model serves on in this case, until it is replaced.
     ///
     /// # Errors
     /// [`StreamError::NoFrame`], [`StreamError::TooFewRows`], [`StreamError::Fit`].
@@ -272,7 +285,7 @@ impl<'m> Stream<'m> {
             Pass::Colors => state.end_colors(&mut self.memory)?,
             Pass::Tilts => state.end_tilts(&mut self.memory),
             Pass::Slants => state.end_slants(),
-            Pass::Solved => return Err(StreamError::WrongPass),
+            Pass::Refine => state.end_refine(&mut self.memory),
         }
         Ok(state.pass)
     }
@@ -290,7 +303,7 @@ impl State {
         self.pass = if goes_on {
             next
         } else if self.solution.outcome == Outcome::Solved {
-            Pass::Solved
+            Pass::Refine
         } else {
             Pass::Colors
         };

@@ -55,6 +55,7 @@ impl State {
         let mut colors = colors.map(|channel| channel.get_mut(..count).unwrap_or_default());
         let places = if self.strata.is_whole() { places.get(..count) } else { None }.unwrap_or_default();
         let scale = lmeds::reciprocal_power_of_two(self.census.largest);
+        (self.scale, self.drift) = (scale, None);
         let searched = match params.lmeds.method {
             Method::LeastMedian => {
                 // Where it was before its colors were drawn.
@@ -78,7 +79,7 @@ impl State {
         };
         let scaled = searched.unwrap_or_else(|| lmeds::least_squares(&pixels, usable, scale));
         let fit = lmeds::judge(&pixels, usable, count, scale, scaled, &params.lmeds, workspace);
-        self.solution.model(&pixels, fit, &params, workspace).map_err(StreamError::Fit)?;
+        self.solution.model(&pixels, &fit, &params, workspace).map_err(StreamError::Fit)?;
         self.go_on(self.solution.outcome == Outcome::NoTilt, Pass::Tilts);
         Ok(())
     }
@@ -105,9 +106,14 @@ impl State {
         });
     }
 
+    /// The pairs along the last row, which has none below.
+    pub(super) fn last_row_tilts(&mut self, memory: &Memory) {
+        self.tilts_of_blocks(None, memory);
+    }
+
     #[inline(never)]
     pub(super) fn end_tilts(&mut self, memory: &mut Memory) {
-        self.tilts_of_blocks(None, memory);
+        self.last_row_tilts(memory);
         let params = self.params.solve;
         self.solution.inlier_count = self.inlier_count;
         self.solution.tilts = match params.tilts {

@@ -20,9 +20,9 @@ impl State {
     /// `normals` is width times (x, y, z). Frame: x right, y up, z toward the camera.
     ///
     /// # Errors
-    /// [`StreamError::WrongPass`] where there is no F, [`StreamError::Row`], [`StreamError::TooShort`].
+    /// [`StreamError::NotSolved`] where there is no F, [`StreamError::Row`], [`StreamError::TooShort`].
     pub fn normals(&self, row: &Image, normals: &mut [f32]) -> Result<(), StreamError> {
-        let orientation = self.orientation().ok_or(StreamError::WrongPass)?;
+        let orientation = self.orientation().ok_or(StreamError::NotSolved)?;
         self.check(row)?;
         let inliers = &self.solution.inliers;
         let (f_inverse, width) = (&orientation.f_inverse, self.width);
@@ -39,7 +39,7 @@ impl State {
     /// # Errors
     /// As [`Self::normals`].
     pub fn packed_normals(&self, row: &Image, packed: &mut [u8]) -> Result<(), StreamError> {
-        let orientation = self.orientation().ok_or(StreamError::WrongPass)?;
+        let orientation = self.orientation().ok_or(StreamError::NotSolved)?;
         self.check(row)?;
         let packed = packed.get_mut(..3 * self.width).ok_or(StreamError::TooShort)?;
         packed.fill(0);
@@ -64,7 +64,7 @@ impl State {
     /// # Errors
     /// As [`Self::normals`].
     pub fn inliers(&self, row: &Image, flags: &mut [u8]) -> Result<(), StreamError> {
-        self.orientation().ok_or(StreamError::WrongPass)?;
+        self.orientation().ok_or(StreamError::NotSolved)?;
         self.check(row)?;
         let flags = flags.get_mut(..self.width).ok_or(StreamError::TooShort)?;
         self.solution.inliers.mark(row, flags);

@@ -182,6 +182,7 @@ mod tests {
     use std::vec::Vec;
 
     /// Which of `count` pixels, whose color is their number, are kept in `capacity` places, and the stride.
+    #[expect(clippy::cast_sign_loss, reason = "numbers of pixels")]
     fn kept(count: usize, capacity: usize, seed: u64) -> (Vec<usize>, usize) {
         let (mut red, mut green, mut blue) =
             (std::vec![9e9; capacity], std::vec![9e9; capacity], std::vec![9e9; capacity]);
