@@ -146,6 +146,8 @@ pub struct State {
     /// What colors are multiplied with before their moments are summed: a power of two.
     scale: f64,
     drift: Option<Drift>,
+    /// Whether the cold start that `solution` is from came to its end.
+    concluded: bool,
     solution: Solution,
 }
 
@@ -180,6 +182,7 @@ impl State {
             moments: Moments::default(),
             scale: 1.0,
             drift: None,
+            concluded: false,
             solution: Solution::unsolved(Census::default(), usable),
         })
     }
@@ -188,6 +191,12 @@ impl State {
     #[must_use]
     pub const fn pass(&self) -> Pass {
         self.pass
+    }
+
+    /// Whether the last cold start came to its end; [`Self::solution`] then says how far, and otherwise is still growing.
+    #[must_use]
+    pub const fn is_concluded(&self) -> bool {
+        self.concluded
     }
 
     /// How far the last cold start came, and what it found on the way.
@@ -300,6 +309,7 @@ impl State {
 
     /// The pass that follows from how far the solution has come, `next` where it goes on.
     fn go_on(&mut self, goes_on: bool, next: Pass) {
+        self.concluded = !goes_on;
         self.pass = if goes_on {
             next
         } else if self.solution.outcome == Outcome::Solved {

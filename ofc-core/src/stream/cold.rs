@@ -48,6 +48,7 @@ impl State {
     pub(super) fn end_colors(&mut self, memory: &mut Memory) -> Result<(), StreamError> {
         let usable = self.usable();
         self.solution = Solution::unsolved(self.census, usable);
+        self.concluded = false;
         lmeds::enough(&self.census, self.width * self.height).map_err(StreamError::Fit)?;
         let params = self.params.solve;
         let count = self.strata.len();
