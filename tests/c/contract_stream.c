@@ -20,7 +20,7 @@ static struct {
     ofc_stream_params params;
 } out;
 
-static ofc_image row_of(const uint8_t picture[HEIGHT][WIDTH][3], int y)
+static ofc_image row_of(uint8_t picture[HEIGHT][WIDTH][3], int y)
 {
     ofc_image row = {.pixels = picture[y],
                      .width = WIDTH,
@@ -41,7 +41,7 @@ static int fresh(void **state)
     return ofc_stream_init(WIDTH, HEIGHT, OFC_PIXEL_RGB8, &params, memory, sizeof memory, &stream);
 }
 
-static ofc_status frame_of(ofc_stream *s, const uint8_t picture[HEIGHT][WIDTH][3], ofc_stream_pass *next)
+static ofc_status frame_of(ofc_stream *s, uint8_t picture[HEIGHT][WIDTH][3], ofc_stream_pass *next)
 {
     assert_int_equal(ofc_stream_begin(s, NULL), OFC_STATUS_OK);
     for (int y = 0; y < HEIGHT; y++) {
