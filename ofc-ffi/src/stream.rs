@@ -143,9 +143,9 @@ unsafe fn opened<'a>(pointer: *mut ofc_stream) -> Result<(Stream<'a>, Extent), o
     let whole = extent(pointer.cast::<u8>().cast_const(), bytes)?;
     // SAFETY: its words say that `init` was here, which has seen that there are so many bytes; state and buffers lie apart.
     let (state, memory) = unsafe {
-        let buffers = pointer.cast::<u8>().add(STATE_BYTES);
-        let values = output_slice(buffers.cast::<f32>(), values);
-        let places = output_slice(buffers.add(size_of_val(values)), places);
+        let buffers = head.cast::<f32>().add(STATE_BYTES / size_of::<f32>());
+        let places = output_slice(buffers.add(values).cast::<u8>(), places);
+        let values = output_slice(buffers, values);
         (&mut (*head).state, Memory { values, places })
     };
     Ok((Stream::new(state, memory).map_err(of_stream_error)?, whole))
@@ -419,7 +419,7 @@ pub unsafe extern "C" fn ofc_stream_normals_row(
     normals: *mut f32,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    unsafe { write_row(stream, row, normals, 3, |state, row, out| state.normals(row, out)) }
+    unsafe { write_row(stream, row, normals, 3, State::normals) }
 }
 
 /// As ofc_stream_normals_row(), in 8 bits a component.
@@ -436,7 +436,7 @@ pub unsafe extern "C" fn ofc_stream_normals_row_packed(
     normals: *mut u8,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    unsafe { write_row(stream, row, normals, 3, |state, row, out| state.packed_normals(row, out)) }
+    unsafe { write_row(stream, row, normals, 3, State::packed_normals) }
 }
 
 /// Which pixels of a row are inliers, under the model there is.
@@ -452,7 +452,7 @@ pub unsafe extern "C" fn ofc_stream_inliers_row(
     flags: *mut u8,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    unsafe { write_row(stream, row, flags, 1, |state, row, out| state.inliers(row, out)) }
+    unsafe { write_row(stream, row, flags, 1, State::inliers) }
 }
 
 /// The common body of the three: `count` values a pixel.

@@ -1,6 +1,7 @@
 /* ofc_stream_*: rows of a camera, from a cold start to refined models. */
 #include "contract.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 
 enum { SIZE = OFC_STREAM_SIZE_FOR(WIDTH, HEIGHT, 10000) };
@@ -391,6 +392,95 @@ static void exact_memory(void **state)
     }
 }
 
+/* What a call needs of the stack: one thread a call, on a stack whose pattern it wears away. */
+enum call { NOTHING, INIT, BEGIN, ROW, END, SOLUTION, DRIFT, NORMALS, PACKED, INLIERS, CALLS };
+
+static struct {
+    enum call call;
+    int32_t y;
+    ofc_status status;
+} job;
+
+static void *run_job(void *argument)
+{
+    (void)argument;
+    const ofc_image row = row_of(ball, job.y);
+    switch (job.call) {
+    case INIT:
+        job.status = ofc_stream_init(WIDTH, HEIGHT, OFC_PIXEL_RGB8, &params, memory, sizeof memory, &stream);
+        break;
+    case BEGIN: job.status = ofc_stream_begin(stream, &out.pass); break;
+    case ROW: job.status = ofc_stream_row(stream, job.y, &row); break;
+    case END: job.status = ofc_stream_end(stream, &out.pass); break;
+    case SOLUTION: job.status = ofc_stream_solution(stream, &out.solution); break;
+    case DRIFT: job.status = ofc_stream_drift_get(stream, &out.drift); break;
+    case NORMALS: job.status = ofc_stream_normals_row(stream, &row, out.normals); break;
+    case PACKED: job.status = ofc_stream_normals_row_packed(stream, &row, out.packed); break;
+    case INLIERS: job.status = ofc_stream_inliers_row(stream, &row, out.flags); break;
+    default: job.status = OFC_STATUS_OK; break;
+    }
+    return NULL;
+}
+
+static size_t stack_of(enum call call, int32_t y)
+{
+    static uint8_t stack[128 << 10] __attribute__((aligned(4096)));
+    pthread_attr_t attributes;
+    pthread_t thread;
+    memset(stack, PATTERN, sizeof stack);
+    job.call = call;
+    job.y = y;
+    assert_int_equal(pthread_attr_init(&attributes), 0);
+    assert_int_equal(pthread_attr_setstack(&attributes, stack, sizeof stack), 0);
+    assert_int_equal(pthread_create(&thread, &attributes, run_job, NULL), 0);
+    assert_int_equal(pthread_join(thread, NULL), 0);
+    assert_int_equal(pthread_attr_destroy(&attributes), 0);
+    assert_int_equal(job.status, OFC_STATUS_OK);
+    size_t left = 0;
+    while (left < sizeof stack && stack[left] == PATTERN)
+        left++;
+    return sizeof stack - left;
+}
+
+static void stack_use(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"nothing", "init",  "begin",   "row",    "end",
+                                        "solution", "drift", "normals", "packed", "inliers"};
+    size_t most[CALLS] = {0};
+#define DEEPEST(call, y)                                                                                               \
+    do {                                                                                                               \
+        const size_t used = stack_of(call, y);                                                                         \
+        most[call] = used > most[call] ? used : most[call];                                                            \
+    } while (0)
+    /* The first round also binds names, which takes stack of its own. */
+    for (int round = 0; round < 2; round++) {
+        memset(most, 0, sizeof most);
+        DEEPEST(NOTHING, 0);
+        DEEPEST(INIT, 0);
+        for (int frame = 0; frame < 4; frame++) {
+            DEEPEST(BEGIN, 0);
+            const ofc_stream_pass was = out.pass;
+            size_t row = 0;
+            for (int y = 0; y < HEIGHT; y++) {
+                const size_t used = stack_of(ROW, y);
+                row = used > row ? used : row;
+            }
+            size_t end = stack_of(END, 0);
+            print_message("pass %d: row %zu, end %zu\n", was, row - most[NOTHING], end - most[NOTHING]);
+            if (row > most[ROW]) most[ROW] = row;
+            if (end > most[END]) most[END] = end;
+        }
+        DEEPEST(SOLUTION, 0);
+        DEEPEST(DRIFT, 0);
+        DEEPEST(NORMALS, HEIGHT / 2);
+        DEEPEST(PACKED, HEIGHT / 2);
+        DEEPEST(INLIERS, HEIGHT / 2);
+    }
+    for (int call = 0; call < CALLS; call++)
+        print_message("%s: %zu bytes of stack\n", names[call], most[call] - most[NOTHING]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -403,6 +493,7 @@ int main(void)
         cmocka_unit_test_setup(bad_streams, fresh),
         cmocka_unit_test_setup(sizes_and_defaults, fresh),
         cmocka_unit_test_setup(exact_memory, fresh),
+        cmocka_unit_test_setup(stack_use, fresh),
     };
     return cmocka_run_group_tests(tests, prepare_stages, NULL);
 }
