@@ -71,9 +71,9 @@
     OFC_ORTHOGONAL_ANNEALING_WORKSPACE_SIZE(width, height, sample_cells)
 #define OFC_STREAM_SIZE(width, height) OFC_STREAM_SIZE_FOR(width, height, 2048)
 #define OFC_STREAM_SIZE_FOR(width, height, sample_size)                                                       \
-    ((4096 + OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) +                 \
-      OFC_SIZE_OF_LARGER((size_t)(width) * 12,                                                                \
-                         OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) * 20) + 7) / 8 * 8)
+    ((4103 + OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) +                 \
+      OFC_SIZE_OF_LARGER((size_t)5184, OFC_SIZE_OF_LARGER((size_t)(width) * 12,                               \
+          OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) * 20))) / 8 * 8)
 #define OFC_SIZE_OF_LARGER(a, b) ((a) > (b) ? (a) : (b))
 #define OFC_SIZE_OF_SMALLER(a, b) ((a) < (b) ? (a) : (b))
 
@@ -1681,8 +1681,8 @@ const char *ofc_status_message(ofc_status status);
 // @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 ofc_status ofc_stream_params_default(struct ofc_stream_params *params);
 
-// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and 12 for each pixel of a row where that is
-// more than 20 for each color. OFC_STREAM_SIZE(width, height) is the same number for the default parameters, for static
+// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 12 for each pixel of
+// a row or 5184 are more than 20 for each color. OFC_STREAM_SIZE(width, height) is the same number for the default parameters, for static
 // buffers: 47,104 bytes at 320 x 240.
 //
 // @return The size, or 0 when an argument is invalid.

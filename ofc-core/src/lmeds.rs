@@ -246,6 +246,7 @@ pub(crate) fn least_squares(pixels: &impl Pixels, usable: Usable, scale: f64) ->
 
 /// The fit that follows from the `scaled` z that was found: rejection and the reweighted fit, over the `count` usable ones
 /// of these pixels.
+#[inline(never)]
 pub(crate) fn judge(
     pixels: &impl Pixels,
     usable: Usable,
@@ -295,6 +296,7 @@ pub(crate) fn judge(
 }
 
 /// The sums over the inliers' scaled colors.
+#[inline(never)]
 fn moments(pixels: &impl Pixels, inliers: &Inliers, scale: f64) -> Moments {
     let mut moments = Moments::default();
     pixels.for_each_window(|window| {
@@ -310,6 +312,7 @@ const ROUNDING: f64 = 0.288_675_134_594_812_9;
 
 /// The smallest difference in a channel between an inlier and the one before it, other than none: how finely the
 /// picture is quantised, whatever the type of its pixels. Zero when there are no differences.
+#[inline(never)]
 fn smallest_step(pixels: &impl Pixels, inliers: &Inliers) -> f64 {
     let mut smallest = f32::INFINITY;
     let mut previous = None;
@@ -343,6 +346,11 @@ pub(crate) struct Refit {
 }
 
 impl Refit {
+    /// The coefficients.
+    pub fn z(&self) -> Coefficients {
+        self.coefficients.map(|estimate| estimate.value)
+    }
+
     /// From the sums of colors times `scale`; `residual_sum` gives the sum of squares about the z of pixel values, and that
     /// of scaled colors.
     pub fn new(
@@ -378,6 +386,7 @@ impl Refit {
 }
 
 /// The least-squares fit to the inliers with its statistics, in pixel values.
+#[inline(never)]
 fn reweighted(pixels: &impl Pixels, inliers: &Inliers, scale: f64, confidence: f64) -> Option<Refit> {
     let moments = moments(pixels, inliers, scale);
     let mut refit = Refit::new(&moments, scale, confidence, |z, _| {

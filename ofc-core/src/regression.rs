@@ -168,26 +168,44 @@ impl Moments {
 
     /// The least-squares z, and (M^T M)^-1; `None` when the colors do not determine z.
     #[must_use]
+    #[inline(never)]
     pub fn solve(&self) -> Option<LeastSquares> {
         let [rr, gg, bb, rg, rb, gb] = self.quadratic;
-        let matrix = self.normal_matrix();
+        let inverse = self.inverse()?;
+        let z = inverse * Vector6::new(rr, gg, bb, 2.0 * rg, 2.0 * rb, 2.0 * gb);
+        let coefficients: Coefficients = z.into();
+        let inverse: [[f64; TERMS]; TERMS] = inverse.into();
+        coefficients.iter().all(|c| c.is_finite()).then_some(LeastSquares { coefficients, inverse })
+    }
+
+    /// (M^T M)^-1; `None` when the colors do not determine z.
+    #[inline(never)]
+    fn inverse(&self) -> Option<Matrix6<f64>> {
+        let mut matrix = self.normal_matrix();
         // Cholesky of the matrix with a unit diagonal: its pivots then say how much of a column the others explain.
         let diagonal = matrix.diagonal();
         if diagonal.iter().any(|&entry| !(entry > 0.0 && entry.is_finite())) {
             return None;
         }
         let scale = diagonal.map(|entry| 1.0 / sqrt(entry));
-        let scaling = Matrix6::from_diagonal(&scale);
-        let cholesky = (scaling * matrix * scaling).cholesky()?;
+        rescale(&mut matrix, &scale);
+        let cholesky = matrix.cholesky()?;
         let pivots = cholesky.l_dirty().diagonal();
         if pivots.iter().any(|&pivot| pivot * pivot < SMALLEST_PIVOT) {
             return None;
         }
-        let inverse = scaling * cholesky.inverse() * scaling;
-        let z = inverse * Vector6::new(rr, gg, bb, 2.0 * rg, 2.0 * rb, 2.0 * gb);
-        let coefficients: Coefficients = z.into();
-        let inverse: [[f64; TERMS]; TERMS] = inverse.into();
-        coefficients.iter().all(|c| c.is_finite()).then_some(LeastSquares { coefficients, inverse })
+        let mut inverse = cholesky.inverse();
+        rescale(&mut inverse, &scale);
+        Some(inverse)
+    }
+}
+
+/// Multiplies every entry by the scales of its row and its column.
+fn rescale(matrix: &mut Matrix6<f64>, scale: &Vector6<f64>) {
+    for (mut column, of_column) in matrix.column_iter_mut().zip(scale.iter()) {
+        for (entry, of_row) in column.iter_mut().zip(scale.iter()) {
+            *entry = of_row * *entry * of_column;
+        }
     }
 }
 

@@ -4,7 +4,7 @@ mod fallback;
 
 pub use fallback::SlantFallback;
 
-use crate::constrained_slant::{self, MAX_CANDIDATES};
+use crate::constrained_slant::{self, Candidates, MAX_CANDIDATES, SlantRoot};
 use crate::ellipsoid::{self, Ellipsoid};
 use crate::image::{Census, Image, Usable};
 use crate::inliers::{Band, Inliers};
@@ -181,10 +181,9 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         .get_mut(..workspace_len(pixels, params.lmeds.sample_size))
         .ok_or(FitError::WorkspaceTooShort)?;
     let usable = params.usable(image);
-    let census = usable.count(image);
-    let fit = lmeds::fit(image, usable, &params.lmeds, workspace);
-    let mut solution = Solution::unsolved(census, usable);
-    solution.model(image, &fit, params, workspace)?;
+    let mut solution = Solution::unsolved(usable.count(image), usable);
+    let fit = lmeds::fit(image, usable, &params.lmeds, workspace).map(|fit| solution.fit = Some(fit));
+    solution.model(image, fit, params, workspace)?;
     if solution.outcome != Outcome::NoTilt {
         return Ok(solution);
     }
@@ -193,7 +192,8 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let (Some(Tilts { tilts, .. }), Some(ellipsoid)) = (solution.tilts, solution.ellipsoid) else {
         return Ok(solution);
     };
-    solution.choose(choose(image, &inliers, &ellipsoid, tilts, params, workspace));
+    solution.choice = choose(image, &inliers, &ellipsoid, tilts, params, workspace);
+    solution.conclude();
     Ok(solution)
 }
 
@@ -215,7 +215,7 @@ impl Solution {
         }
     }
 
-    /// From the fit to the inliers: everything that the places of the pixels mean nothing to. The outcome is
+    /// From the fit, which is in its place unless it failed, to the inliers: everything that the places of the pixels mean nothing to. The outcome is
     /// [`Outcome::NoTilt`] where tilts come next.
     ///
     /// # Errors
@@ -226,21 +226,21 @@ impl Solution {
     pub(crate) fn model(
         &mut self,
         pixels: &impl Pixels,
-        fit: &Result<Fit, FitError>,
+        fit: Result<(), FitError>,
         params: &Params,
         workspace: &mut [f32],
     ) -> Result<(), FitError> {
         let usable = self.inliers.usable;
-        let fit = match *fit {
-            Ok(ref fit) => fit,
-            Err(FitError::RankDeficient { color_deviations }) => {
+        let fit = match (fit, &self.fit) {
+            (Ok(()), Some(fit)) => fit,
+            (Err(FitError::RankDeficient { color_deviations }), _) => {
                 self.color_deviations = color_deviations;
                 self.rank = rank::rank(pixels, |window| usable.bits(window), None);
                 return Ok(());
             }
-            Err(error) => return Err(error),
+            (Err(error), _) => return Err(error),
+            (Ok(()), None) => return Ok(()),
         };
-        self.fit = Some(*fit);
         self.color_deviations = fit.color_deviations;
         self.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
         self.inlier_count = fit.inliers;
@@ -273,14 +273,13 @@ impl Solution {
         Ok(())
     }
 
-    /// Ends with this choice of slants.
-    pub(crate) fn choose(&mut self, choice: Option<Choice>) {
-        self.outcome = match &choice {
+    /// Ends with the choice of slants that is in its place.
+    pub(crate) fn conclude(&mut self) {
+        self.outcome = match &self.choice {
             None => Outcome::NoConsistentSlants,
             Some(choice) if choice.orientation.rank < 3 => Outcome::RankDeficient,
             Some(_) => Outcome::Solved,
         };
-        self.choice = choice;
     }
 }
 
@@ -294,8 +293,8 @@ fn choose(
     workspace: &mut [f32],
 ) -> Option<Choice> {
     let orient = |slants| orient(ellipsoid, slants, tilts, params);
-    let mut candidates = candidates(ellipsoid, tilts);
-    for candidate in &mut candidates {
+    let mut choice = Choice::among(&constrained_slant::roots(tilts, ellipsoid.cosines));
+    for candidate in &mut choice.candidates {
         let orientation = orient(candidate.slants);
         if orientation.rank == 3 {
             let integral =
@@ -303,15 +302,44 @@ fn choose(
             candidate.integral = integral.map_or(f64::INFINITY, |integral| integral.mean);
         }
     }
-    if let Some(chosen) = most_integrable(&candidates) {
-        return chosen_root(candidates, chosen, orient);
+    if let Some((chosen, slants)) = choice.most_integrable() {
+        (choice.chosen, choice.slants) = (chosen, slants);
+    } else {
+        let fallback = params.fallback;
+        (choice.slants, choice.source) =
+            fallback::slants(fallback, image, inliers, ellipsoid, tilts, workspace)?;
     }
-    let (slants, source) = fallback::slants(params.fallback, image, inliers, ellipsoid, tilts, workspace)?;
-    let orientation = orient(slants);
-    Some(Choice { slants, source, candidates, chosen: 0, orientation })
+    choice.orientation = orient(choice.slants);
+    Some(choice)
+}
+
+impl Choice {
+    /// No choice yet among these roots of eqs. 25, whose integrals are not known.
+    pub(crate) fn among(roots: &Candidates) -> Self {
+        let mut candidates = Vec::new();
+        for &SlantRoot { slants, branch, residual } in roots {
+            // There are no more roots than candidates have room.
+            let _ = candidates.push(Candidate { slants, branch, residual, integral: f64::INFINITY });
+        }
+        Self {
+            slants: [0.0; 3],
+            source: SlantSource::Root,
+            candidates,
+            chosen: 0,
+            orientation: Orientation::NONE,
+        }
+    }
+
+    /// Which candidate has the least integral, and its slants.
+    pub(crate) fn most_integrable(&self) -> Option<(usize, [f64; 3])> {
+        let candidates = self.candidates.iter().enumerate();
+        let least = candidates.min_by(|(_, a), (_, b)| a.integral.total_cmp(&b.integral));
+        least.map(|(chosen, candidate)| (chosen, candidate.slants))
+    }
 }
 
 /// F from the lengths of its rows, their slants and tilts.
+#[inline(never)]
 pub(crate) fn orient(
     ellipsoid: &Ellipsoid,
     slants: [f64; 3],
@@ -319,37 +347,4 @@ pub(crate) fn orient(
     params: &Params,
 ) -> Orientation {
     Orientation::new(orientation::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
-}
-
-/// The roots of eqs. 25, their integrals not known yet.
-pub(crate) fn candidates(ellipsoid: &Ellipsoid, tilts: [f64; 3]) -> Vec<Candidate, MAX_CANDIDATES> {
-    let mut candidates = Vec::new();
-    for root in &constrained_slant::roots(tilts, ellipsoid.cosines) {
-        let candidate = Candidate {
-            slants: root.slants,
-            branch: root.branch,
-            residual: root.residual,
-            integral: f64::INFINITY,
-        };
-        // There are no more roots than candidates have room.
-        let _ = candidates.push(candidate);
-    }
-    candidates
-}
-
-/// Which candidate has the least integral.
-pub(crate) fn most_integrable(candidates: &[Candidate]) -> Option<usize> {
-    let least =
-        |(_, a): &(usize, &Candidate), (_, b): &(usize, &Candidate)| a.integral.total_cmp(&b.integral);
-    candidates.iter().enumerate().min_by(least).map(|(chosen, _)| chosen)
-}
-
-/// The choice of this root.
-pub(crate) fn chosen_root(
-    candidates: Vec<Candidate, MAX_CANDIDATES>,
-    chosen: usize,
-    orient: impl Fn([f64; 3]) -> Orientation,
-) -> Option<Choice> {
-    let slants = candidates.get(chosen)?.slants;
-    Some(Choice { slants, source: SlantSource::Root, candidates, chosen, orientation: orient(slants) })
 }

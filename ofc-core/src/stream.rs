@@ -17,7 +17,7 @@ mod warm;
 
 pub use warm::{Change, Drift};
 
-use crate::constrained_slant::MAX_CANDIDATES;
+use crate::constrained_slant::{MAX_CANDIDATES, ROOM};
 use crate::image::{Census, Image, MAX_PIXELS, Sample, Usable};
 use crate::integrability;
 use crate::lmeds::{self, FitError, MIN_PIXELS};
@@ -101,7 +101,8 @@ pub enum StreamError {
 pub const fn values_len(width: usize, height: usize, sample_size: u32) -> usize {
     let sample = room(width, height, sample_size).saturating_mul(5);
     let row = width.saturating_mul(3);
-    if sample > row { sample } else { row }
+    let larger = if sample > row { sample } else { row };
+    if larger > ROOM { larger } else { ROOM }
 }
 
 /// How many bytes [`Memory::places`] needs.
@@ -119,7 +120,7 @@ const fn room(width: usize, height: usize, sample_size: u32) -> usize {
 /// The caller's buffers, which belong to the stream from one call to the next. What they hold at first does not matter.
 #[derive(Debug)]
 pub struct Memory<'m> {
-    /// [`values_len`] numbers: the sample and its residuals, then the row before.
+    /// [`values_len`] numbers: the sample and its residuals, then the row before, then boxes of slants.
     pub values: &'m mut [f32],
     /// [`places_len`] bytes: where in the frame the sample is from.
     pub places: &'m mut [u8],
@@ -157,15 +158,29 @@ impl State {
     /// # Errors
     /// [`StreamError::Params`], [`StreamError::Size`].
     pub fn new(width: usize, height: usize, format: Sample, params: Params) -> Result<Self, StreamError> {
+        Self::check_size(width, height, &params)?;
+        Ok(Self::unchecked(width, height, format, params))
+    }
+
+    /// Whether there can be a stream of frames of this size.
+    ///
+    /// # Errors
+    /// [`StreamError::Params`], [`StreamError::Size`].
+    pub fn check_size(width: usize, height: usize, params: &Params) -> Result<(), StreamError> {
         if !params.are_valid() {
             return Err(StreamError::Params);
         }
-        if !width.checked_mul(height).is_some_and(|pixels| (1..=MAX_PIXELS).contains(&pixels)) {
-            return Err(StreamError::Size);
-        }
+        let holds = width.checked_mul(height).is_some_and(|pixels| (1..=MAX_PIXELS).contains(&pixels));
+        if holds { Ok(()) } else { Err(StreamError::Size) }
+    }
+
+    /// As [`Self::new`] for what [`Self::check_size`] has seen: made where it is put, without a copy on the stack.
+    #[must_use]
+    #[inline(always)]
+    pub fn unchecked(width: usize, height: usize, format: Sample, params: Params) -> Self {
         let usable = Usable { saturation: params.solve.saturation.unwrap_or(format.saturation()) };
         let lmeds = params.solve.lmeds;
-        Ok(Self {
+        Self {
             params,
             width,
             height,
@@ -184,7 +199,7 @@ impl State {
             drift: None,
             concluded: false,
             solution: Solution::unsolved(Census::default(), usable),
-        })
+        }
     }
 
     /// What the next frame is for, or the present one.

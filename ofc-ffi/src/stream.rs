@@ -166,8 +166,8 @@ pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_param
     }))
 }
 
-/// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and 12 for each pixel of a row where that is
-/// more than 20 for each color. OFC_STREAM_SIZE(width, height) is the same number for the default parameters, for static
+/// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 12 for each pixel of
+/// a row or 5184 are more than 20 for each color. OFC_STREAM_SIZE(width, height) is the same number for the default parameters, for static
 /// buffers: 47,104 bytes at 320 x 240.
 ///
 /// @return The size, or 0 when an argument is invalid.
@@ -231,10 +231,14 @@ pub unsafe extern "C" fn ofc_stream_init(
         let memory_extent = workspace(memory.cast(), memory_bytes, need)?;
         let out = Out::new(stream)?;
         disjoint(&[memory_extent, out.extent], &[params_extent])?;
-        let state = State::new(width, height, sample, params).map_err(of_stream_error)?;
+        State::check_size(width, height, &params).map_err(of_stream_error)?;
         let words = words((width as u64) << 32 | height as u64, u64::from(sample_size));
         // SAFETY: aligned, long enough, and apart from everything else.
-        unsafe { memory.cast::<Head>().write(Head { words, state }) };
+        unsafe {
+            memory
+                .cast::<Head>()
+                .write(Head { words, state: State::unchecked(width, height, sample, params) })
+        };
         out.write(memory.cast());
         Ok(OFC_STATUS_OK)
     };

@@ -3,16 +3,15 @@
 use super::strata::{Sampled, Slots, Strata};
 use super::{Memory, Pass, State, StreamError, room};
 use crate::cells::{Block, for_each_block_of_rows};
-use crate::constrained_slant;
+use crate::constrained_slant::{self, Candidates, SlantRoot};
+use crate::ellipsoid::Coefficients;
 use crate::image::{Census, Image, WINDOW, Window, for_each_bit};
 use crate::inliers::Inliers;
 use crate::integrability;
 use crate::lmeds::{self, Method};
 use crate::pixels::second_differences;
 use crate::rng::Rng;
-use crate::solve::{
-    Choice, Outcome, SlantFallback, SlantSource, Solution, candidates, chosen_root, most_integrable, orient,
-};
+use crate::solve::{Choice, Outcome, SlantFallback, SlantSource, Solution, orient};
 use crate::tilt::{TiltEstimator, Tilts, pentland};
 
 impl State {
@@ -46,43 +45,59 @@ impl State {
 
     #[inline(never)]
     pub(super) fn end_colors(&mut self, memory: &mut Memory) -> Result<(), StreamError> {
-        let usable = self.usable();
-        self.solution = Solution::unsolved(self.census, usable);
+        self.solution = Solution::unsolved(self.census, self.usable());
         self.concluded = false;
         lmeds::enough(&self.census, self.width * self.height).map_err(StreamError::Fit)?;
+        self.scale = lmeds::reciprocal_power_of_two(self.census.largest);
+        self.drift = None;
+        let found = self.search(memory);
         let params = self.params.solve;
-        let count = self.strata.len();
-        let (Slots { colors, places }, workspace) = self.slots(memory).ok_or(StreamError::TooShort)?;
-        let mut colors = colors.map(|channel| channel.get_mut(..count).unwrap_or_default());
-        let places = if self.strata.is_whole() { places.get(..count) } else { None }.unwrap_or_default();
-        let scale = lmeds::reciprocal_power_of_two(self.census.largest);
-        (self.scale, self.drift) = (scale, None);
-        let searched = match params.lmeds.method {
-            Method::LeastMedian => {
-                // Where it was before its colors were drawn.
-                let mut rng = Rng::new(params.lmeds.seed);
-                rng.skip(count as u64);
-                multiply(&mut colors, scale);
-                let subsets = params.lmeds.subset_count().unwrap_or(0);
-                let residuals = workspace.get_mut(..count).unwrap_or_default();
-                let found =
-                    lmeds::search(colors.each_ref().map(|channel| &**channel), residuals, subsets, &mut rng);
-                multiply(&mut colors, 1.0 / scale);
-                Some(found)
-            }
-            Method::LeastSquares => None,
+        let (pixels, workspace) = self.sampled(memory).ok_or(StreamError::TooShort)?;
+        let usable = self.usable();
+        let scaled = match params.lmeds.method {
+            Method::LeastMedian => found,
+            Method::LeastSquares => lmeds::least_squares(&pixels, usable, self.scale),
         };
+        let count = self.strata.len();
+        let fit = lmeds::judge(&pixels, usable, count, self.scale, scaled, &params.lmeds, workspace);
+        let fit = fit.map(|fit| self.solution.fit = Some(fit));
+        self.solution.model(&pixels, fit, &params, workspace).map_err(StreamError::Fit)?;
+        self.go_on(self.solution.outcome == Outcome::NoTilt, Pass::Tilts);
+        Ok(())
+    }
+
+    /// The sample as pixels, and the room behind it.
+    fn sampled<'a>(&self, memory: &'a mut Memory) -> Option<(Sampled<'a>, &'a mut [f32])> {
+        let (Slots { colors: [red, green, blue], places }, workspace) = self.slots(memory)?;
+        let count = self.strata.len();
         let pixels = Sampled {
-            colors: colors.map(|channel| &*channel),
-            places,
+            colors: [red.get(..count)?, green.get(..count)?, blue.get(..count)?],
+            places: if self.strata.is_whole() { places.get(..count)? } else { &[] },
             format: self.format,
             second_differences: self.second_differences,
         };
-        let scaled = searched.unwrap_or_else(|| lmeds::least_squares(&pixels, usable, scale));
-        let fit = lmeds::judge(&pixels, usable, count, scale, scaled, &params.lmeds, workspace);
-        self.solution.model(&pixels, &fit, &params, workspace).map_err(StreamError::Fit)?;
-        self.go_on(self.solution.outcome == Outcome::NoTilt, Pass::Tilts);
-        Ok(())
+        Some((pixels, workspace))
+    }
+
+    /// The scaled z that least median of squares finds on the sample.
+    #[inline(never)]
+    fn search(&self, memory: &mut Memory) -> Option<Coefficients> {
+        let lmeds = self.params.solve.lmeds;
+        if lmeds.method != Method::LeastMedian {
+            return None;
+        }
+        let count = self.strata.len();
+        let (Slots { colors, .. }, residuals) = self.slots(memory)?;
+        let residuals = residuals.get_mut(..count)?;
+        let mut colors = colors.map(|channel| channel.get_mut(..count).unwrap_or_default());
+        // Where it was before its colors were drawn.
+        let mut rng = Rng::new(lmeds.seed);
+        rng.skip(count as u64);
+        multiply(&mut colors, self.scale);
+        let scaled = colors.each_ref().map(|channel| &**channel);
+        let found = lmeds::search(scaled, residuals, lmeds.subset_count()?, &mut rng);
+        multiply(&mut colors, 1.0 / self.scale);
+        found
     }
 
     pub(super) fn begin_tilts(&mut self) {
@@ -99,6 +114,7 @@ impl State {
     }
 
     /// The blocks of the row before and this one.
+    #[inline(never)]
     fn tilts_of_blocks(&mut self, row: Option<&Image>, memory: &Memory) {
         let (differences, count) = (&mut self.differences, &mut self.inlier_count);
         for_each_block_of_stream(self.width, &self.solution.inliers, row, memory, |block| {
@@ -115,41 +131,49 @@ impl State {
     #[inline(never)]
     pub(super) fn end_tilts(&mut self, memory: &mut Memory) {
         self.last_row_tilts(memory);
-        let params = self.params.solve;
         self.solution.inlier_count = self.inlier_count;
-        self.solution.tilts = match params.tilts {
+        self.solution.tilts = self.tilts();
+        let goes_on = self.find_candidates(memory);
+        self.go_on(goes_on, Pass::Slants);
+    }
+
+    /// The tilts that the differences, or the caller, have.
+    pub(super) fn tilts(&self) -> Option<Tilts> {
+        match self.params.solve.tilts {
             TiltEstimator::Given(tilts) => Some(Tilts::alone(tilts)),
             _ => self.differences.tilts(),
-        };
-        let (Some(Tilts { tilts, .. }), Some(ellipsoid)) = (self.solution.tilts, self.solution.ellipsoid)
+        }
+    }
+
+    /// The candidates, and F where there is one at most; whether there are more.
+    #[inline(never)]
+    fn find_candidates(&mut self, memory: &mut Memory) -> bool {
+        let (Some(Tilts { tilts, .. }), Some(ellipsoid)) = (self.solution.tilts, &self.solution.ellipsoid)
         else {
-            return self.go_on(false, Pass::Colors);
+            return false;
         };
-        let candidates = candidates(&ellipsoid, tilts);
-        let orient = |slants| orient(&ellipsoid, slants, tilts, &params);
-        match candidates.len() {
-            0 => {
-                let choice = (params.fallback == SlantFallback::LeastSquares).then(|| {
-                    let slants = constrained_slant::least_squares(tilts, ellipsoid.cosines).slants;
-                    let orientation = orient(slants);
-                    Choice { slants, source: SlantSource::LeastSquares, candidates, chosen: 0, orientation }
-                });
-                self.solution.choose(choice);
-                return self.go_on(false, Pass::Colors);
+        let mut roots = Candidates::new();
+        constrained_slant::roots_within(tilts, ellipsoid.cosines, memory.values, &mut roots);
+        let params = &self.params.solve;
+        let Some((slants, source)) = slants_of(roots.first(), tilts, ellipsoid.cosines, params.fallback)
+        else {
+            self.solution.conclude();
+            return false;
+        };
+        let several = roots.len() > 1;
+        if several {
+            for (inverse, root) in self.candidates.iter_mut().zip(&roots) {
+                let orientation = orient(ellipsoid, root.slants, tilts, params);
+                *inverse = (orientation.rank == 3).then_some(orientation.f_inverse);
             }
-            1 => {
-                self.solution.choose(chosen_root(candidates, 0, orient));
-                return self.go_on(false, Pass::Colors);
-            }
-            _ => {}
         }
-        for (inverse, candidate) in self.candidates.iter_mut().zip(&candidates) {
-            let orientation = orient(candidate.slants);
-            *inverse = (orientation.rank == 3).then_some(orientation.f_inverse);
+        let choice = self.solution.choice.insert(Choice::among(&roots));
+        (choice.slants, choice.source) = (slants, source);
+        if !several {
+            choice.orientation = orient(ellipsoid, slants, tilts, params);
+            self.solution.conclude();
         }
-        // Until the next pass the first one is as good as any.
-        self.solution.choice = chosen_root(candidates, 0, orient);
-        self.go_on(true, Pass::Slants);
+        several
     }
 
     pub(super) fn begin_slants(&mut self) {
@@ -173,22 +197,38 @@ impl State {
 
     #[inline(never)]
     pub(super) fn end_slants(&mut self) {
-        let (Some(Choice { mut candidates, .. }), Some(Tilts { tilts, .. }), Some(ellipsoid)) =
-            (self.solution.choice.take(), self.solution.tilts, self.solution.ellipsoid)
-        else {
-            return self.go_on(false, Pass::Colors);
-        };
-        for ((candidate, inverse), integral) in
-            candidates.iter_mut().zip(&self.candidates).zip(&self.integrals)
+        if let (Some(choice), Some(Tilts { tilts, .. }), Some(ellipsoid)) =
+            (&mut self.solution.choice, self.solution.tilts, &self.solution.ellipsoid)
         {
-            let mean = inverse.and_then(|_| integral.mean());
-            candidate.integral = mean.map_or(f64::INFINITY, |integral| integral.mean);
+            let sums = self.candidates.iter().zip(&self.integrals);
+            for (candidate, (inverse, integral)) in choice.candidates.iter_mut().zip(sums) {
+                let mean = inverse.and_then(|_| integral.mean());
+                candidate.integral = mean.map_or(f64::INFINITY, |integral| integral.mean);
+            }
+            if let Some((chosen, slants)) = choice.most_integrable() {
+                (choice.chosen, choice.slants) = (chosen, slants);
+            }
+            choice.orientation = orient(ellipsoid, choice.slants, tilts, &self.params.solve);
         }
-        let params = self.params.solve;
-        let chosen = most_integrable(&candidates).unwrap_or(0);
-        self.solution
-            .choose(chosen_root(candidates, chosen, |slants| orient(&ellipsoid, slants, tilts, &params)));
+        self.solution.conclude();
         self.go_on(false, Pass::Colors);
+    }
+}
+
+/// The slants of this root, or without one those of the fallback; `None` where that is to refuse.
+pub(super) fn slants_of(
+    root: Option<&SlantRoot>,
+    tilts: [f64; 3],
+    cosines: [f64; 3],
+    fallback: SlantFallback,
+) -> Option<([f64; 3], SlantSource)> {
+    match root {
+        Some(root) => Some((root.slants, SlantSource::Root)),
+        None if fallback == SlantFallback::LeastSquares => {
+            let slants = constrained_slant::without_roots(tilts, cosines).slants;
+            Some((slants, SlantSource::LeastSquares))
+        }
+        None => None,
     }
 }
 
@@ -200,6 +240,7 @@ fn multiply(colors: &mut [&mut [f32]; 3], factor: f64) {
 }
 
 /// Keeps a row for the blocks that it makes with the next one: channels apart, NaN where the mask leaves a pixel out.
+#[inline(never)]
 fn keep(row: &Image, memory: &mut Memory) {
     let width = row.width();
     row.for_each_window(|window| {

@@ -4,20 +4,17 @@
 //! that agree with both those nearest to the old ones are taken. The dispersion grows or shrinks with the deviation of
 //! the inliers' residuals: as it was truncated before, so it is now.
 
+use super::cold::slants_of;
 use super::{Memory, Pass, State};
-use crate::constrained_slant;
-use crate::ellipsoid;
+use crate::constrained_slant::{self, Candidates, SlantRoot};
+use crate::ellipsoid::{self, Coefficients};
 use crate::image::{Census, Image, for_each_bit};
 use crate::inliers::{Band, Inliers};
 use crate::lmeds::{MIN_PIXELS, Refit};
-use crate::location::Location;
 use crate::mat3::{self, Mat3};
 use crate::regression::Moments;
-use crate::solve::{
-    Candidate, Choice, Outcome, SMALLEST_NOISE_MARGIN, SlantFallback, SlantSource, candidates, chosen_root,
-    orient,
-};
-use crate::tilt::{TiltEstimator, Tilts, pentland};
+use crate::solve::{Choice, SMALLEST_NOISE_MARGIN, orient};
+use crate::tilt::pentland;
 use libm::{atan2, sqrt};
 
 /// What a frame says of the model from before it.
@@ -78,52 +75,67 @@ impl State {
         self.last_row_tilts(memory);
         let inlier_share = f64::from(self.moments.count) / self.census.usable.max(1) as f64;
         let enough = self.census.usable >= MIN_PIXELS && inlier_share >= self.params.smallest_share;
-        let change = if enough { self.refine() } else { None };
+        let change = if enough { self.refine(memory.values) } else { None };
         self.drift = Some(Drift { inlier_share, change });
         self.pass = if change.is_some() { Pass::Refine } else { Pass::Colors };
     }
 
     /// The new model; `None`, with the old one kept, where there is none.
     #[inline(never)]
-    fn refine(&mut self) -> Option<Change> {
-        let params = self.params.solve;
-        let confidence = params.lmeds.limits_confidence;
-        let refit = Refit::new(&self.moments, self.scale, confidence, |_, z| self.moments.residual_sum(z))?;
-        if refit.degenerate_noise_deviation <= SMALLEST_NOISE_MARGIN * refit.noise_deviation {
+    fn refine(&mut self, room: &mut [f32]) -> Option<Change> {
+        let form = self.refined_form()?;
+        let ellipsoid = ellipsoid::decompose(&form).ok()?;
+        let tilts = self.tilts()?;
+        let mut roots = Candidates::new();
+        constrained_slant::roots_within(tilts.tilts, ellipsoid.cosines, room, &mut roots);
+        let params = &self.params.solve;
+        let chosen = nearest(&roots, self.solution.choice.as_ref()?.slants);
+        let root = roots.get(chosen);
+        let (slants, source) = slants_of(root, tilts.tilts, ellipsoid.cosines, params.fallback)?;
+        let orientation = orient(&ellipsoid, slants, tilts.tilts, params);
+        if orientation.rank < 3 {
             return None;
         }
-        let z = refit.coefficients.map(|estimate| estimate.value);
-        let ellipsoid = ellipsoid::decompose(&z).ok()?;
-        let tilts = match params.tilts {
-            TiltEstimator::Given(tilts) => Tilts::alone(tilts),
-            _ => self.differences.tilts()?,
-        };
-        let orient = |slants| orient(&ellipsoid, slants, tilts.tilts, &params);
-        let old = self.solution.choice.as_ref()?;
-        let candidates = candidates(&ellipsoid, tilts.tilts);
-        let choice = match nearest(&candidates, old.slants) {
-            Some(chosen) => chosen_root(candidates, chosen, orient)?,
-            None if params.fallback == SlantFallback::LeastSquares => {
-                let slants = constrained_slant::least_squares(tilts.tilts, ellipsoid.cosines).slants;
-                let orientation = orient(slants);
-                Choice { slants, source: SlantSource::LeastSquares, candidates, chosen: 0, orientation }
-            }
-            None => return None,
-        };
-        if choice.orientation.rank < 3 {
-            return None;
-        }
-        let fit = self.solution.fit.as_mut()?;
-        // An exact fit stays one.
-        let ratio = refit.residual_deviation / fit.residual_deviation.max(f64::MIN_POSITIVE);
-        let dispersion = if fit.residual_deviation > 0.0 { ratio } else { 1.0 };
-        let change = change(&old.orientation.f, &choice.orientation.f, dispersion);
+        let old = self.orientation()?.f;
+        let dispersion = self.adopt_fit()?;
+        let choice = self.solution.choice.insert(Choice::among(&roots));
+        (choice.slants, choice.source, choice.chosen) = (slants, source, chosen);
+        choice.orientation = orientation;
+        self.solution.ellipsoid = Some(ellipsoid);
+        self.solution.tilts = Some(tilts);
+        Some(change(&old, &orientation.f, dispersion))
+    }
 
+    fn refit(&self) -> Option<Refit> {
+        let confidence = self.params.solve.lmeds.limits_confidence;
+        Refit::new(&self.moments, self.scale, confidence, |_, z| self.moments.residual_sum(z))
+    }
+
+    /// C of the sums; `None` where they do not determine it.
+    #[inline(never)]
+    fn refined_form(&self) -> Option<Coefficients> {
+        let refit = self.refit()?;
+        (refit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * refit.noise_deviation).then(|| refit.z())
+    }
+
+    /// Takes the fit of the sums over, with the bands that follow from it, and says by how much the dispersion grew.
+    #[inline(never)]
+    fn adopt_fit(&mut self) -> Option<f64> {
+        let refit = self.refit()?;
+        let rejection = self.params.solve.lmeds.rejection;
+        let fit = self.solution.fit.as_mut()?;
+        let z = refit.z();
+        // An exact fit stays one.
+        let dispersion = if fit.residual_deviation > 0.0 {
+            refit.residual_deviation / fit.residual_deviation
+        } else {
+            1.0
+        };
         fit.robust = z;
         fit.median_residual *= dispersion;
         fit.dispersion *= dispersion;
         fit.r_squared = 1.0 - fit.median_residual * fit.median_residual;
-        fit.band = Band::residual(z, fit.dispersion, params.lmeds.rejection);
+        fit.band = Band::residual(z, fit.dispersion, rejection);
         fit.coefficients = refit.coefficients;
         fit.residual_deviation = refit.residual_deviation;
         fit.color_deviations = refit.color_deviations;
@@ -133,32 +145,23 @@ impl State {
         fit.inliers = refit.count as usize;
         self.solution.inliers.residual = fit.band;
         if let Some(norms) = &mut self.solution.norm_location {
-            *norms = Location {
-                location: norms.location,
-                median_distance: norms.median_distance * dispersion,
-                dispersion: norms.dispersion * dispersion,
-            };
-            self.solution.inliers.norm = Band::norm(z, norms, params.lmeds.rejection);
+            norms.median_distance *= dispersion;
+            norms.dispersion *= dispersion;
+            self.solution.inliers.norm = Band::norm(z, norms, rejection);
         }
         self.solution.census = self.census;
         self.solution.color_deviations = refit.color_deviations;
         self.solution.inlier_count = self.inlier_count;
-        self.solution.ellipsoid = Some(ellipsoid);
-        self.solution.tilts = Some(tilts);
-        self.solution.choice = Some(choice);
-        self.solution.outcome = Outcome::Solved;
-        Some(change)
+        Some(dispersion)
     }
 }
 
-/// Which candidate's slants are nearest to these.
-fn nearest(candidates: &[Candidate], slants: [f64; 3]) -> Option<usize> {
-    let distance = |candidate: &Candidate| {
-        candidate.slants.iter().zip(slants).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
-    };
-    let nearer =
-        |(_, a): &(usize, &Candidate), (_, b): &(usize, &Candidate)| distance(a).total_cmp(&distance(b));
-    candidates.iter().enumerate().min_by(nearer).map(|(chosen, _)| chosen)
+/// Which root's slants are nearest to these; 0 without any.
+fn nearest(roots: &Candidates, slants: [f64; 3]) -> usize {
+    let distance =
+        |root: &SlantRoot| root.slants.iter().zip(slants).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+    let roots = roots.iter().enumerate();
+    roots.min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b))).map_or(0, |(chosen, _)| chosen)
 }
 
 fn change(old: &Mat3, new: &Mat3, dispersion: f64) -> Change {
