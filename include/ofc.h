@@ -28,7 +28,7 @@
  * Matrices    3x3, row-major. Channels are r, g, b in that order whatever the pixel format.
  * Strides     bytes, always, as cv::Mat::step.
  * Memory      the library allocates nothing and keeps nothing: buffers and workspaces are the caller's, and free again
- *             when the call returns. Workspace sizes are functions, and macros for static buffers. Nothing is written
+ *             when the call returns; a stream's memory is the stream's until the caller is done with it. Workspace sizes are functions, and macros for static buffers. Nothing is written
  *             outside what a call says it writes.
  * Errors      every call checks its arguments: null, misaligned, too short, overlapping, empty, huge, not finite. On a
  *             negative status no output has been touched. What cannot be checked is that memory is as long as said.
@@ -48,7 +48,7 @@
 #define OFC_VERSION (OFC_VERSION_MAJOR * 10000 + OFC_VERSION_MINOR * 100 + OFC_VERSION_PATCH)
 
 /* Workspace sizes as constants, for static buffers: each is what the function of its name returns. The plain forms of
- * solve and lmeds are for the default sample_size; the _FOR forms take another. */
+ * solve, lmeds and stream are for the default sample_size; the _FOR forms take another. */
 #define OFC_SOLVE_WORKSPACE_SIZE(width, height) OFC_SOLVE_WORKSPACE_SIZE_FOR(width, height, 10000)
 #define OFC_SOLVE_WORKSPACE_SIZE_FOR(width, height, sample_size)                                              \
     OFC_SIZE_OF_LARGER(OFC_NORM_LOCATION_WORKSPACE_SIZE(width, height),                                       \
@@ -70,6 +70,11 @@
     (OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_cells)) * 36)
 #define OFC_CONSTRAINED_SLANTS_INTEGRABLE_WORKSPACE_SIZE(width, height, sample_cells)                         \
     OFC_ORTHOGONAL_ANNEALING_WORKSPACE_SIZE(width, height, sample_cells)
+#define OFC_STREAM_SIZE(width, height) OFC_STREAM_SIZE_FOR(width, height, 2048)
+#define OFC_STREAM_SIZE_FOR(width, height, sample_size)                                                       \
+    ((4103 + OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) +                 \
+      OFC_SIZE_OF_LARGER((size_t)5184, OFC_SIZE_OF_LARGER((size_t)(width) * 12,                               \
+          OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) * 20))) / 8 * 8)
 #define OFC_SIZE_OF_LARGER(a, b) ((a) > (b) ? (a) : (b))
 #define OFC_SIZE_OF_SMALLER(a, b) ((a) < (b) ? (a) : (b))
 
@@ -259,6 +264,9 @@
 // An iteration ended before it reached its tolerance; the result is what it had reached.
 #define OFC_STATUS_NOT_CONVERGED 5
 
+// The stream's model no longer fits the frame: the next frame is for colors. The old model serves until it is replaced.
+#define OFC_STATUS_COLD_START_NEEDED 6
+
 // A pointer that must not be NULL is.
 #define OFC_STATUS_NULL_POINTER -10
 
@@ -305,11 +313,44 @@
 // No two by two square of inliers to take differences on.
 #define OFC_STATUS_NO_CELLS -43
 
+// There is no stream at this address: ofc_stream_init() was not called, or something wrote over it.
+#define OFC_STATUS_NO_STREAM -50
+
+// No frame was begun.
+#define OFC_STATUS_NO_FRAME -51
+
+// A row comes twice, or one before it is missing. The frame goes on as if the call had not been.
+#define OFC_STATUS_ROW_ORDER -52
+
+// The frame has all its rows.
+#define OFC_STATUS_TOO_MANY_ROWS -53
+
+// The frame ended before its last row: it is forgotten, and its pass is still to come.
+#define OFC_STATUS_TOO_FEW_ROWS -54
+
+// This is not one row of the stream's width and sample type.
+#define OFC_STATUS_ROW_MISMATCH -55
+
+// A cold start: a sample of the colors, and the model. A model of before serves until this pass ends.
+#define OFC_PASS_COLORS 1
+
+// A cold start: the tilts; with one candidate for the slants also F.
+#define OFC_PASS_TILTS 2
+
+// A cold start: the choice among the candidates for the slants, and F.
+#define OFC_PASS_SLANTS 3
+
+// F is there, and the frame refines it.
+#define OFC_PASS_REFINE 4
+
 // Least median of squares, the paper's.
 #define OFC_FIT_LEAST_MEDIAN 0
 
 // Least squares over every usable pixel, none rejected: Woodham, Iwahori and Barman's, for pictures without outliers.
 #define OFC_FIT_LEAST_SQUARES 1
+
+// A stream in memory of the caller's: see ofc_stream_init(). It may be copied to another place of the same alignment.
+typedef struct ofc_stream ofc_stream;
 
 // The result of a call: 0 is success; negative is an error that leaves every output as it was; positive is a sound
 // question without a full answer, and each call says what it writes then. Numbers are never reused.
@@ -947,6 +988,38 @@ typedef struct ofc_solve_params {
     // Must be zero.
     uint32_t reserved[5];
 } ofc_solve_params;
+
+// What a stream does. Set by ofc_stream_params_default().
+typedef struct ofc_stream_params {
+    // As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
+    // road is OFC_ROAD_PAPER, tilt_estimator OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
+    // OFC_FALLBACK_LEAST_SQUARES.
+    struct ofc_solve_params solve;
+    // Where less than this share of the usable pixels fits the model, a frame does not refine it and
+    // OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
+    double smallest_share;
+    // Must be zero.
+    uint32_t reserved[4];
+} ofc_stream_params;
+
+// What the rows of a stream's frame are for: one of OFC_PASS_*.
+typedef int32_t ofc_stream_pass;
+
+// What the last OFC_PASS_REFINE frame said of the model from before it.
+typedef struct ofc_stream_drift {
+    // Share of the usable pixels whose residual the old model accepts.
+    double inlier_share;
+    // Angles between the old and the new rows of F; zero where there is no new model.
+    double angle_rad[3];
+    // Lengths of the new rows of F over those of the old; zero where there is no new model.
+    double strength_ratio[3];
+    // Dispersion of the new residuals over that of the old; zero where there is no new model.
+    double dispersion_ratio;
+    // 1 when there is a new model, 0 when a cold start is needed.
+    int32_t refined;
+    // Zero.
+    uint32_t reserved;
+} ofc_stream_drift;
 
 
 
@@ -1654,6 +1727,145 @@ ofc_status ofc_solve(const struct ofc_image *image,
 
 // A sentence for a status, in static storage; never NULL, also for numbers that are no status.
 const char *ofc_status_message(ofc_status status);
+
+// Sets every field to its default.
+//
+// @param params  Output.
+// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+ofc_status ofc_stream_params_default(struct ofc_stream_params *params);
+
+// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 12 for each pixel of
+// a row or 5184 are more than 20 for each color. OFC_STREAM_SIZE(width, height) is the same number for the default parameters, for static
+// buffers: 47,104 bytes at 320 x 240.
+//
+// @return The size, or 0 when an argument is invalid.
+size_t ofc_stream_size(int32_t width,
+                       int32_t height,
+                       const struct ofc_stream_params *params);
+
+// Makes a stream for frames that come row by row. A frame is begun, given its rows from the top down, and ended; which
+// pass it is for follows from the ones before it:
+//
+//     ofc_stream_begin(stream, &pass);
+//     for (int32_t y = 0; y < height; y++) {
+//         row.pixels = next_row();
+//         ofc_stream_row(stream, y, &row);
+//         if (pass == OFC_PASS_REFINE)
+//             ofc_stream_normals_row(stream, &row, normals);
+//     }
+//     ofc_status status = ofc_stream_end(stream, &pass);
+//
+// A cold start takes the passes over colors and tilts, and where eqs. 25 have several roots that over slants, all of one
+// frame or of consecutive frames of a scene at rest. Then there is F; every further frame refines it. Medians and fits of
+// a cold start are those of a stratified sample of the colors. Where the sample holds all usable pixels, the solution is
+// that of ofc_solve() to the bit, but for the integral of a lone candidate, which is not computed: infinite.
+//
+// @param width, height  Of the frames.
+// @param format     How samples are stored; their order and planes are each row's own.
+// @param params     See the struct.
+// @param memory     ofc_stream_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter. It is the stream's
+//                   until the caller is done with it: there is nothing to free.
+// @param memory_bytes  Its size.
+// @param stream     Output: the stream, at the address of its memory.
+// @return OFC_STATUS_OK; OFC_STATUS_WORKSPACE_TOO_SMALL; the status of an invalid argument.
+ofc_status ofc_stream_init(int32_t width,
+                           int32_t height,
+                           ofc_pixel_format format,
+                           const struct ofc_stream_params *params,
+                           void *memory,
+                           size_t memory_bytes,
+                           struct ofc_stream **stream);
+
+// Forgets the model and any frame under way: the next frame is for colors.
+//
+// @param stream  The stream.
+// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM; the status of an invalid argument.
+ofc_status ofc_stream_restart(struct ofc_stream *stream);
+
+// Begins a frame. One that was not ended is forgotten.
+//
+// @param stream  The stream.
+// @param pass    Output: what the frame is for, one of OFC_PASS_*; may be NULL.
+// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM; the status of an invalid argument.
+ofc_status ofc_stream_begin(struct ofc_stream *stream, ofc_stream_pass *pass);
+
+// Takes the next row of the frame.
+//
+// @param stream  The stream.
+// @param y       The row, 0 at the top.
+// @param row     A picture of height 1; its mask, black and saturated pixels are left out.
+// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM, OFC_STATUS_NO_FRAME, OFC_STATUS_ROW_ORDER, OFC_STATUS_TOO_MANY_ROWS,
+//         OFC_STATUS_ROW_MISMATCH; the status of an invalid argument. Unless it is OFC_STATUS_OK the call changed nothing.
+ofc_status ofc_stream_row(struct ofc_stream *stream,
+                          int32_t y,
+                          const struct ofc_image *row);
+
+// Ends the frame.
+//
+// @param stream  The stream.
+// @param pass    Output: what the next frame is for, one of OFC_PASS_*; may be NULL. Written unless an argument is invalid.
+// @return OFC_STATUS_OK: the next pass follows from this one. OFC_STATUS_COLD_START_NEEDED: the frame does not fit the
+//         model, as ofc_stream_drift_get() says; the next pass is over colors. A cold start that comes to no F ends with
+//         OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_NO_TILT or
+//         OFC_STATUS_NO_CONSISTENT_SLANTS, or without any result with OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
+//         OFC_STATUS_SATURATED; the next pass is over colors. OFC_STATUS_NO_STREAM, OFC_STATUS_NO_FRAME,
+//         OFC_STATUS_TOO_FEW_ROWS; the status of an invalid argument.
+//
+// Reference: section 3.4.
+ofc_status ofc_stream_end(struct ofc_stream *stream,
+                          ofc_stream_pass *pass);
+
+// What the last cold start found, and the frames that refined it since.
+//
+// @param stream    The stream.
+// @param solution  Output. After frames that refined it: F, its stages and the fit are the last frame's, rank is that of
+//                  the cold start, and candidates have no integral (infinite).
+// @return As ofc_solve(), for the cold start; OFC_STATUS_NOT_SOLVED, `solution` untouched, before its last pass;
+//         OFC_STATUS_NO_STREAM; the status of an invalid argument.
+ofc_status ofc_stream_solution(struct ofc_stream *stream,
+                               struct ofc_solution *solution);
+
+// What the last frame of OFC_PASS_REFINE says of the model from before it.
+//
+// @param stream  The stream.
+// @param drift   Output.
+// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED when there was no such frame since the cold start; OFC_STATUS_NO_STREAM; the
+//         status of an invalid argument.
+ofc_status ofc_stream_drift_get(struct ofc_stream *stream,
+                                struct ofc_stream_drift *drift);
+
+// Unit normals of a row's inliers, under the model there is: any row of any frame.
+//
+// @param stream   The stream.
+// @param row      A picture of height 1.
+// @param normals  Output: width times (x, y, z) floats, zero where there is no normal. Frame: x right, y up, z toward the
+//                 camera.
+// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH; OFC_STATUS_NO_STREAM; the status of an invalid
+//         argument.
+//
+// Reference: eq. 8.
+ofc_status ofc_stream_normals_row(struct ofc_stream *stream,
+                                  const struct ofc_image *row,
+                                  float *normals);
+
+// As ofc_stream_normals_row(), in 8 bits a component.
+//
+// @param stream   The stream.
+// @param row      A picture of height 1.
+// @param normals  Output: width times (x, y, z) bytes, (n + 1) / 2 of 255, rounded; zeros, which is no normal's, where there
+//                 is none.
+// @return As ofc_stream_normals_row().
+ofc_status ofc_stream_normals_row_packed(struct ofc_stream *stream,
+                                         const struct ofc_image *row,
+                                         uint8_t *normals);
+
+// Which pixels of a row are inliers, under the model there is.
+//
+// @param stream  The stream.
+// @param row     A picture of height 1.
+// @param flags   Output: width bytes, 255 for an inlier and 0 elsewhere.
+// @return As ofc_stream_normals_row().
+ofc_status ofc_stream_inliers_row(struct ofc_stream *stream, const struct ofc_image *row, uint8_t *flags);
 
 // The version of the library that is running: major * 10000 + minor * 100 + patch, to be compared with OFC_VERSION.
 uint32_t ofc_version(void);

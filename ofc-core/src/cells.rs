@@ -45,6 +45,12 @@ impl Block {
         self.top_bits & (self.bottom_bits >> 1) & self.own
     }
 
+    /// Inliers of the top row that belong to this block rather than to the next.
+    #[must_use]
+    pub const fn own_top(&self) -> u64 {
+        self.top_bits & self.own
+    }
+
     /// Cells of four inliers.
     #[must_use]
     pub const fn cells(&self) -> u64 {
@@ -52,18 +58,35 @@ impl Block {
     }
 }
 
+impl Default for Block {
+    fn default() -> Self {
+        Self { top: Window::new(), bottom: Window::new(), top_bits: 0, bottom_bits: 0, own: u64::MAX >> 1 }
+    }
+}
+
 /// Visits the picture as blocks, top row first. `inliers` gives the bits of a window's inliers.
 pub fn for_each_block(image: &Image, inliers: impl Fn(&Window) -> u64, mut visit: impl FnMut(&Block)) {
-    let (top, bottom) = (Window::new(), Window::new());
-    let mut block = Block { top, bottom, top_bits: 0, bottom_bits: 0, own: 0 };
+    let mut block = Block::default();
     for y in 0..image.height() {
-        for x in (0..image.width()).step_by(WINDOW - 1) {
-            image.read(x, y, &mut block.top);
-            block.top_bits = inliers(&block.top);
-            image.read(x, y + 1, &mut block.bottom);
-            block.bottom_bits = inliers(&block.bottom);
-            block.own = u64::MAX >> 1;
-            visit(&block);
-        }
+        let read = |x, window: &mut Window, row| image.read(x, y + row, window);
+        for_each_block_of_rows(image.width(), &mut block, read, &inliers, &mut visit);
+    }
+}
+
+/// Visits the blocks of two neighbouring rows `width` pixels wide. `read` gives the pixels from a column on, of the upper
+/// row, 0, or the lower one, 1; `block` is where they are put.
+pub fn for_each_block_of_rows(
+    width: usize,
+    block: &mut Block,
+    read: impl Fn(usize, &mut Window, usize),
+    inliers: impl Fn(&Window) -> u64,
+    mut visit: impl FnMut(&Block),
+) {
+    for x in (0..width).step_by(WINDOW - 1) {
+        read(x, &mut block.top, 0);
+        block.top_bits = inliers(&block.top);
+        read(x, &mut block.bottom, 1);
+        block.bottom_bits = inliers(&block.bottom);
+        visit(block);
     }
 }

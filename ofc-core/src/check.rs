@@ -27,6 +27,7 @@ use crate::image::{Image, Window, for_each_bit};
 use crate::mat3;
 use crate::normals::{Length, normal};
 use crate::orientation::Orientation;
+use crate::pixels::Pixels;
 use crate::regression::{Estimate, TERMS};
 use crate::render::DepthMap;
 use crate::select::{kth_smallest, median_rank};

@@ -21,10 +21,12 @@ mod cell;
 mod curve;
 mod least_squares;
 mod roots;
+mod waiting;
 
 pub use curve::{CurvePoint, curve};
-pub use least_squares::{NearestSlants, least_squares};
-pub use roots::roots;
+pub use least_squares::{NearestSlants, least_squares, without_roots};
+pub use roots::{roots, roots_within};
+pub use waiting::ROOM;
 
 use crate::mat3::{self, Mat3};
 use core::f64::consts::FRAC_PI_2;

@@ -4,6 +4,8 @@
 //! and BGR differs from RGB only in where its channels begin. Pixels may have any alignment; u16 and f32 are in the
 //! machine's byte order.
 
+use crate::pixels::Pixels;
+
 /// The largest number of pixels in a picture, 2^31 - 1: sums and indices stay far from their limits.
 pub const MAX_PIXELS: usize = i32::MAX as usize;
 
@@ -232,6 +234,21 @@ impl<'a> Image<'a> {
         self.sample
     }
 
+    /// Row `y` alone, with its mask, as a picture of height 1; `None` below the last row.
+    #[must_use]
+    pub fn row(&self, y: usize) -> Option<Self> {
+        if y >= self.height {
+            return None;
+        }
+        let start = y * self.row_stride;
+        let channels = self.channels.map(|channel| channel.get(start..).unwrap_or_default());
+        let mask = self.mask.map(|mask| Mask {
+            bytes: mask.bytes.get(y * mask.row_stride..).unwrap_or_default(),
+            row_stride: mask.row_stride,
+        });
+        Some(Self { channels, height: 1, mask, ..*self })
+    }
+
     /// Reads up to [`WINDOW`] pixels of row `y` from column `x` on, fewer at the end of the row and none beyond the
     /// picture.
     pub fn read(&self, x: usize, y: usize, window: &mut Window) {
@@ -272,26 +289,19 @@ impl<'a> Image<'a> {
             }
         }
     }
+}
 
-    /// Writes `value` of every selected pixel into `out`, in picture order, as far as it holds, and returns what was
-    /// written. `selected` gives the bits of a window.
-    pub fn gather<'w>(
-        &self,
-        selected: impl Fn(&Window) -> u64,
-        out: &'w mut [f32],
-        value: impl Fn(f32, f32, f32) -> f64,
-    ) -> &'w mut [f32] {
-        let mut count = 0;
-        self.for_each_window(|window| {
-            for_each_bit(selected(window), |i| {
-                let [r, g, b] = window.pixel(i);
-                if let Some(slot) = out.get_mut(count) {
-                    *slot = value(r, g, b) as f32;
-                    count += 1;
-                }
-            });
-        });
-        out.get_mut(..count).unwrap_or_default()
+impl Pixels for Image<'_> {
+    fn for_each_window(&self, visit: impl FnMut(&Window)) {
+        self.for_each_window(visit);
+    }
+
+    fn sample(&self) -> Sample {
+        self.sample
+    }
+
+    fn len(&self) -> usize {
+        self.width * self.height
     }
 }
 
@@ -414,22 +424,27 @@ impl Usable {
     pub fn count(&self, image: &Image) -> Census {
         let mut census = Census::default();
         image.for_each_window(|window| {
-            let usable = self.bits(window);
-            let finite =
-                window.masked & window.bits(|r, g, b| r.is_finite() && g.is_finite() && b.is_finite());
-            let dark = finite & window.bits(|r, g, b| r <= 0.0 && g <= 0.0 && b <= 0.0);
-            census.usable += usable.count_ones() as usize;
-            census.masked_out += window.len - window.masked.count_ones() as usize;
-            census.non_finite += (window.masked & !finite).count_ones() as usize;
-            census.dark += dark.count_ones() as usize;
-            census.saturated += (finite & !dark & !usable).count_ones() as usize;
-            for_each_bit(usable, |i| {
-                for value in window.pixel(i) {
-                    census.largest = census.largest.max(value.abs());
-                }
-            });
+            self.count_window(window, &mut census);
         });
         census
+    }
+
+    /// Adds the pixels of one window to a census, and returns the bits of the usable ones.
+    pub fn count_window(&self, window: &Window, census: &mut Census) -> u64 {
+        let usable = self.bits(window);
+        let finite = window.masked & window.bits(|r, g, b| r.is_finite() && g.is_finite() && b.is_finite());
+        let dark = finite & window.bits(|r, g, b| r <= 0.0 && g <= 0.0 && b <= 0.0);
+        census.usable += usable.count_ones() as usize;
+        census.masked_out += window.len - window.masked.count_ones() as usize;
+        census.non_finite += (window.masked & !finite).count_ones() as usize;
+        census.dark += dark.count_ones() as usize;
+        census.saturated += (finite & !dark & !usable).count_ones() as usize;
+        for_each_bit(usable, |i| {
+            for value in window.pixel(i) {
+                census.largest = census.largest.max(value.abs());
+            }
+        });
+        usable
     }
 }
 

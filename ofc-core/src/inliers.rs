@@ -9,6 +9,7 @@
 use crate::ellipsoid::{Coefficients, quadratic_form};
 use crate::image::{Image, Usable, Window, for_each_bit};
 use crate::location::Location;
+use crate::pixels::Pixels;
 use libm::{fabs, fabsf};
 
 /// Deviations below this are rounding of f32 colors: an exact fit accepts them all.
@@ -159,11 +160,11 @@ impl Inliers {
         self.norm.bits(window, self.residual.bits(window, self.usable.bits(window)))
     }
 
-    /// How many inliers `image` holds.
+    /// How many inliers `pixels` hold.
     #[must_use]
-    pub fn count(&self, image: &Image) -> usize {
+    pub fn count(&self, pixels: &impl Pixels) -> usize {
         let mut count = 0;
-        image.for_each_window(|window| count += self.bits(window).count_ones() as usize);
+        pixels.for_each_window(|window| count += self.bits(window).count_ones() as usize);
         count
     }
 

@@ -3,7 +3,7 @@
 //! # Reference
 //! Section 2.3, eq. 15.
 
-use crate::cells::for_each_block;
+use crate::cells::{Block, for_each_block};
 use crate::image::{Image, Window, for_each_bit};
 use crate::mat3::{self, Mat3};
 
@@ -20,12 +20,16 @@ pub struct Integrability {
 /// this slope, so that a few grazing pixels do not decide between candidates.
 pub(crate) const SMALLEST_N3: f64 = 0.05;
 
-/// The integral (15) of the normals `f_inverse` rho, by finite differences on cells of four inliers.
-///
-/// `inliers` gives the bits of a window's inliers. `None` when there is no such cell.
-pub fn integral(image: &Image, inliers: impl Fn(&Window) -> u64, f_inverse: &Mat3) -> Option<Integrability> {
-    let (mut sum, mut cells) = (0.0, 0);
-    for_each_block(image, inliers, |block| {
+/// The integral (15), summed over blocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sum {
+    sum: f64,
+    cells: usize,
+}
+
+impl Sum {
+    /// Adds the cells of one block, their normals being `f_inverse` rho.
+    pub fn add(&mut self, block: &Block, f_inverse: &Mat3) {
         let slopes = |window: &Window, i| {
             let [n1, n2, n3] = mat3::apply(f_inverse, window.pixel(i).map(f64::from));
             let n3 = n3.max(SMALLEST_N3);
@@ -40,8 +44,22 @@ pub fn integral(image: &Image, inliers: impl Fn(&Window) -> u64, f_inverse: &Mat
             let q_x = 0.5 * ((q_ne - q_nw) + (q_se - q_sw));
             block_sum += (p_y - q_x) * (p_y - q_x);
         });
-        sum += block_sum;
-        cells += bits.count_ones() as usize;
-    });
-    (cells > 0).then(|| Integrability { mean: sum / cells as f64, cells })
+        self.sum += block_sum;
+        self.cells += bits.count_ones() as usize;
+    }
+
+    /// The mean; `None` when there are no cells.
+    #[must_use]
+    pub fn mean(&self) -> Option<Integrability> {
+        (self.cells > 0).then(|| Integrability { mean: self.sum / self.cells as f64, cells: self.cells })
+    }
+}
+
+/// The integral (15) of the normals `f_inverse` rho, by finite differences on cells of four inliers.
+///
+/// `inliers` gives the bits of a window's inliers. `None` when there is no such cell.
+pub fn integral(image: &Image, inliers: impl Fn(&Window) -> u64, f_inverse: &Mat3) -> Option<Integrability> {
+    let mut sum = Sum::default();
+    for_each_block(image, inliers, |block| sum.add(block, f_inverse));
+    sum.mean()
 }

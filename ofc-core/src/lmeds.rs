@@ -9,9 +9,10 @@
 //! P. J. Rousseeuw, K. Van Driessen, "Computing LTS regression for large data sets", 2006 (concentration steps).
 
 use crate::ellipsoid::{Coefficients, quadratic_form};
-use crate::image::{Image, Usable, for_each_bit};
+use crate::image::{Census, Image, Usable, for_each_bit};
 use crate::inliers::{Band, Inliers};
 use crate::mat3::symmetric_eigen;
+use crate::pixels::Pixels;
 use crate::regression::{self, Estimate, Moments, TERMS};
 use crate::rng::Rng;
 use crate::select::{kth_smallest, median_rank};
@@ -197,51 +198,85 @@ pub fn fit(image: &Image, usable: Usable, params: &Params, workspace: &mut [f32]
         workspace.get_mut(..workspace_len(pixels, params.sample_size)).ok_or(FitError::WorkspaceTooShort)?;
 
     let census = usable.count(image);
-    if census.usable < MIN_PIXELS {
-        let offered = pixels - census.masked_out;
-        return Err(if census.dark * 2 > offered {
-            FitError::Dark
-        } else if census.saturated * 2 > offered {
-            FitError::Saturated
-        } else {
-            FitError::TooFewPixels
-        });
-    }
+    enough(&census, pixels)?;
     // A power of two, so that scaling is exact.
     let scale = reciprocal_power_of_two(census.largest);
-    let degenerate = || FitError::RankDeficient {
-        color_deviations: deviations(&moments(image, &Inliers::all(usable), scale), scale),
-    };
     let scaled = match params.method {
         Method::LeastMedian => {
             let mut rng = Rng::new(params.seed);
             let sample_len = census.usable.min(params.sample_size as usize);
-            let mut sample =
-                Sample::gather(image, usable, census.usable, sample_len, scale, &mut rng, workspace)
-                    .ok_or(FitError::WorkspaceTooShort)?;
-            let proposal = sample.search(subsets, &mut rng).ok_or_else(degenerate)?;
-            sample.concentrate(proposal)
+            Sample::gather(image, usable, census.usable, sample_len, scale, &mut rng, workspace)
+                .ok_or(FitError::WorkspaceTooShort)?
+                .best(subsets, &mut rng)
         }
-        Method::LeastSquares => {
-            let all = moments(image, &Inliers::all(usable), scale);
-            all.solve().ok_or_else(degenerate)?.coefficients
-        }
+        Method::LeastSquares => least_squares(image, usable, scale),
     };
-    let robust = scaled.map(|c| c * scale * scale);
+    judge(image, usable, census.usable, scale, scaled, params, workspace)
+}
 
-    let residuals = image.gather(Inliers::all(usable).selector(), workspace, |r, g, b| {
+/// The scaled z that `subsets` find among these scaled colors, channels apart; `None` when none determines one. `residuals`
+/// is room for one of each color.
+pub(crate) fn search(
+    [red, green, blue]: [&[f32]; 3],
+    residuals: &mut [f32],
+    subsets: u32,
+    rng: &mut Rng,
+) -> Option<Coefficients> {
+    Sample { red, green, blue, residuals }.best(subsets, rng)
+}
+
+/// Whether there are enough usable pixels for a fit, out of `pixels`.
+pub(crate) fn enough(census: &Census, pixels: usize) -> Result<(), FitError> {
+    if census.usable >= MIN_PIXELS {
+        return Ok(());
+    }
+    let offered = pixels - census.masked_out;
+    Err(if census.dark * 2 > offered {
+        FitError::Dark
+    } else if census.saturated * 2 > offered {
+        FitError::Saturated
+    } else {
+        FitError::TooFewPixels
+    })
+}
+
+/// The scaled z of all usable pixels.
+pub(crate) fn least_squares(pixels: &impl Pixels, usable: Usable, scale: f64) -> Option<Coefficients> {
+    moments(pixels, &Inliers::all(usable), scale).solve().map(|fit| fit.coefficients)
+}
+
+/// The fit that follows from the `scaled` z that was found: rejection and the reweighted fit, over the `count` usable ones
+/// of these pixels.
+#[inline(never)]
+pub(crate) fn judge(
+    pixels: &impl Pixels,
+    usable: Usable,
+    usable_count: usize,
+    scale: f64,
+    scaled: Option<Coefficients>,
+    params: &Params,
+    workspace: &mut [f32],
+) -> Result<Fit, FitError> {
+    let degenerate = || FitError::RankDeficient {
+        color_deviations: deviations(&moments(pixels, &Inliers::all(usable), scale), scale),
+    };
+    let robust = scaled.ok_or_else(degenerate)?.map(|c| c * scale * scale);
+
+    let residuals = pixels.gather(Inliers::all(usable).selector(), workspace, |r, g, b| {
         fabs(quadratic_form(&robust, r, g, b) - 1.0)
     });
     let median_residual = kth_smallest(residuals, median_rank(residuals.len())).map_or(0.0, f64::from);
-    let count = census.usable as f64;
+    let count = usable_count as f64;
     let dispersion = CONSISTENCY * (1.0 + 5.0 / (count - TERMS as f64)) * median_residual;
     let (band, subsets) = match params.method {
-        Method::LeastMedian => (Band::residual(robust, dispersion, params.rejection), subsets),
+        Method::LeastMedian => {
+            (Band::residual(robust, dispersion, params.rejection), params.subset_count().unwrap_or(0))
+        }
         Method::LeastSquares => (Band { form: robust, ..Band::EVERYTHING }, 0),
     };
 
     let inliers = Inliers { residual: band, ..Inliers::all(usable) };
-    let refit = reweighted(image, &inliers, scale, params.limits_confidence).ok_or_else(degenerate)?;
+    let refit = reweighted(pixels, &inliers, scale, params.limits_confidence).ok_or_else(degenerate)?;
     Ok(Fit {
         robust,
         median_residual,
@@ -250,19 +285,20 @@ pub fn fit(image: &Image, usable: Usable, params: &Params, workspace: &mut [f32]
         band,
         coefficients: refit.coefficients,
         residual_deviation: refit.residual_deviation,
-        color_deviations: deviations(&refit.moments, scale),
+        color_deviations: refit.color_deviations,
         noise_deviation: refit.noise_deviation,
         degenerate_noise_deviation: refit.degenerate_noise_deviation,
-        usable: census.usable,
-        inliers: refit.moments.count as usize,
+        usable: usable_count,
+        inliers: refit.count as usize,
         subsets,
     })
 }
 
 /// The sums over the inliers' scaled colors.
-fn moments(image: &Image, inliers: &Inliers, scale: f64) -> Moments {
+#[inline(never)]
+fn moments(pixels: &impl Pixels, inliers: &Inliers, scale: f64) -> Moments {
     let mut moments = Moments::default();
-    image.for_each_window(|window| {
+    pixels.for_each_window(|window| {
         let mut sums = Moments::default();
         for_each_bit(inliers.bits(window), |i| sums.add(window.pixel(i).map(|c| f64::from(c) * scale)));
         moments.merge(&sums);
@@ -275,10 +311,11 @@ const ROUNDING: f64 = 0.288_675_134_594_812_9;
 
 /// The smallest difference in a channel between an inlier and the one before it, other than none: how finely the
 /// picture is quantised, whatever the type of its pixels. Zero when there are no differences.
-fn smallest_step(image: &Image, inliers: &Inliers) -> f64 {
+#[inline(never)]
+fn smallest_step(pixels: &impl Pixels, inliers: &Inliers) -> f64 {
     let mut smallest = f32::INFINITY;
     let mut previous = None;
-    image.for_each_window(|window| {
+    pixels.for_each_window(|window| {
         for_each_bit(inliers.bits(window), |i| {
             let pixel = window.pixel(i);
             for (now, before) in pixel.into_iter().zip(previous.unwrap_or(pixel)) {
@@ -297,49 +334,76 @@ fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
     symmetric_eigen(&moments.second_moments()).values.map(|square| sqrt(square.max(0.0)) / scale)
 }
 
-struct Refit {
-    coefficients: [Estimate; TERMS],
-    residual_deviation: f64,
-    noise_deviation: f64,
-    degenerate_noise_deviation: f64,
-    moments: Moments,
+/// Least squares over inliers.
+pub(crate) struct Refit {
+    pub coefficients: [Estimate; TERMS],
+    pub residual_deviation: f64,
+    pub noise_deviation: f64,
+    pub degenerate_noise_deviation: f64,
+    pub color_deviations: [f64; 3],
+    pub count: u32,
+}
+
+impl Refit {
+    /// The coefficients.
+    pub fn z(&self) -> Coefficients {
+        self.coefficients.map(|estimate| estimate.value)
+    }
+
+    /// From the sums of colors times `scale`; `residual_sum` gives the sum of squares about the z of pixel values, and that
+    /// of scaled colors.
+    pub fn new(
+        moments: &Moments,
+        scale: f64,
+        confidence: f64,
+        residual_sum: impl FnOnce(&Coefficients, &Coefficients) -> f64,
+    ) -> Option<Self> {
+        if (moments.count as usize) < MIN_PIXELS {
+            return None;
+        }
+        let fit = moments.solve()?;
+        let to_pixel_values = scale * scale;
+        let residual_sum = residual_sum(&fit.coefficients.map(|c| c * to_pixel_values), &fit.coefficients);
+        let variance = residual_sum / (f64::from(moments.count) - TERMS as f64);
+        let coefficients =
+            regression::estimates(&fit, variance, moments.count, confidence).map(|e| Estimate {
+                value: e.value * to_pixel_values,
+                standard_error: e.standard_error * to_pixel_values,
+                low: e.low * to_pixel_values,
+                high: e.high * to_pixel_values,
+                ..e
+            });
+        Some(Self {
+            coefficients,
+            residual_deviation: sqrt(variance),
+            noise_deviation: moments.noise(&fit.coefficients, residual_sum) / scale,
+            degenerate_noise_deviation: moments.degenerate_noise(&fit) / scale,
+            color_deviations: deviations(moments, scale),
+            count: moments.count,
+        })
+    }
 }
 
 /// The least-squares fit to the inliers with its statistics, in pixel values.
-fn reweighted(image: &Image, inliers: &Inliers, scale: f64, confidence: f64) -> Option<Refit> {
-    let moments = moments(image, inliers, scale);
-    if (moments.count as usize) < MIN_PIXELS {
-        return None;
-    }
-    let fit = moments.solve()?;
-    let to_pixel_values = scale * scale;
-    let z = fit.coefficients.map(|c| c * to_pixel_values);
-    let mut residual_sum = 0.0;
-    image.for_each_window(|window| {
-        let mut sum = 0.0;
-        for_each_bit(inliers.bits(window), |i| {
-            let [r, g, b] = window.pixel(i);
-            let residual = quadratic_form(&z, r, g, b) - 1.0;
-            sum += residual * residual;
+#[inline(never)]
+fn reweighted(pixels: &impl Pixels, inliers: &Inliers, scale: f64, confidence: f64) -> Option<Refit> {
+    let moments = moments(pixels, inliers, scale);
+    let mut refit = Refit::new(&moments, scale, confidence, |z, _| {
+        let mut residual_sum = 0.0;
+        pixels.for_each_window(|window| {
+            let mut sum = 0.0;
+            for_each_bit(inliers.bits(window), |i| {
+                let [r, g, b] = window.pixel(i);
+                let residual = quadratic_form(z, r, g, b) - 1.0;
+                sum += residual * residual;
+            });
+            residual_sum += sum;
         });
-        residual_sum += sum;
-    });
-    let variance = residual_sum / (f64::from(moments.count) - TERMS as f64);
-    let coefficients = regression::estimates(&fit, variance, moments.count, confidence).map(|e| Estimate {
-        value: e.value * to_pixel_values,
-        standard_error: e.standard_error * to_pixel_values,
-        low: e.low * to_pixel_values,
-        high: e.high * to_pixel_values,
-        ..e
-    });
-    let rounding = smallest_step(image, inliers) * ROUNDING;
-    Some(Refit {
-        coefficients,
-        residual_deviation: sqrt(variance),
-        noise_deviation: (moments.noise(&fit.coefficients, residual_sum) / scale).max(rounding),
-        degenerate_noise_deviation: moments.degenerate_noise(&fit) / scale,
-        moments,
-    })
+        residual_sum
+    })?;
+    let rounding = smallest_step(pixels, inliers) * ROUNDING;
+    refit.noise_deviation = refit.noise_deviation.max(rounding);
+    Some(refit)
 }
 
 /// 2^-k for the k that brings `largest` into [1, 2).
@@ -407,6 +471,12 @@ impl<'w> Sample<'w> {
 
     fn colors(&self) -> impl Iterator<Item = (f32, f32, f32)> {
         self.red.iter().zip(self.green).zip(self.blue).map(|((&r, &g), &b)| (r, g, b))
+    }
+
+    /// The z that the search finds; `None` when no subset determines an ellipsoid.
+    fn best(mut self, subsets: u32, rng: &mut Rng) -> Option<Coefficients> {
+        let proposal = self.search(subsets, rng)?;
+        Some(self.concentrate(proposal))
     }
 
     /// The proposal with the smallest median residual; `None` when no subset determines an ellipsoid.

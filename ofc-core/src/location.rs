@@ -8,9 +8,9 @@
 //! section 4.2.
 
 use crate::ellipsoid::{Coefficients, quadratic_form};
-use crate::image::Image;
 use crate::inliers::Inliers;
 use crate::lmeds::CONSISTENCY;
+use crate::pixels::Pixels;
 use crate::select;
 use libm::sqrt;
 
@@ -56,14 +56,14 @@ pub fn shortest_half(values: &mut [f32], scratch: &mut [f32]) -> Option<Location
 /// # Scratch
 /// Two `f32` a pixel.
 pub fn norms(
-    image: &Image,
+    pixels: &impl Pixels,
     inliers: &Inliers,
     form: &Coefficients,
     workspace: &mut [f32],
 ) -> Option<Location> {
-    let (norms, scratch) = workspace.split_at_mut_checked(image.width() * image.height())?;
+    let (norms, scratch) = workspace.split_at_mut_checked(pixels.len())?;
     let length = |r, g, b| sqrt(quadratic_form(form, r, g, b).max(0.0));
-    let norms = image.gather(inliers.selector(), norms, length);
+    let norms = pixels.gather(inliers.selector(), norms, length);
     shortest_half(norms, scratch)
 }
 

@@ -23,6 +23,10 @@ pub struct Orientation {
 }
 
 impl Orientation {
+    /// Where there is no F.
+    pub(crate) const NONE: Self =
+        Self { f: [[0.0; 3]; 3], f_inverse: [[0.0; 3]; 3], singular_values: [0.0; 3], rank: 0 };
+
     /// F and its inverse through the singular values above `rank_threshold` times the largest.
     #[must_use]
     pub fn new(f: Mat3, rank_threshold: f64) -> Self {

@@ -21,8 +21,9 @@
 //! multiple illuminants", J. Opt. Soc. Am. A 11, 1994.
 
 use crate::ellipsoid::{self, Coefficients};
-use crate::image::{Image, Sample, Window, for_each_bit};
+use crate::image::{Sample, Window, for_each_bit};
 use crate::mat3::{self, Mat3, SymmetricEigen};
+use crate::pixels::Pixels;
 use libm::sqrt;
 
 /// Deviations of the colors below this many times the noise are noise.
@@ -75,22 +76,22 @@ impl Rank {
 // The windows of its passes need not lie on the stack at once, nor on that of the whole pipeline.
 #[inline(never)]
 pub fn rank(
-    image: &Image,
+    pixels: &impl Pixels,
     inliers: impl Fn(&Window) -> u64,
     fit: Option<(Coefficients, f64)>,
 ) -> Option<Rank> {
-    let colors = Colors::of(image, &inliers)?;
+    let colors = Colors::of(pixels, &inliers)?;
     let color_deviations = colors.eigen.values.map(|square| sqrt(square.max(0.0)));
     let [largest, second, third] = color_deviations;
-    let floor = match image.sample() {
+    let floor = match pixels.sample() {
         Sample::U8 | Sample::U16 => ROUNDING,
         Sample::F32 => SMALLEST_NOISE * largest,
     };
     let color_noise = match fit {
-        None => floor.max(NOISE_WITHOUT_FIT * largest).max(local_noise(image, &inliers)),
+        None => floor.max(NOISE_WITHOUT_FIT * largest).max(local_noise(pixels, &inliers)),
         Some((z, deviation)) => {
             let noise = noise_of_residuals(&ellipsoid::matrix(&z), &colors.moments, deviation);
-            if noise < 0.5 * floor { floor.max(local_noise(image, &inliers)) } else { noise.max(floor) }
+            if noise < 0.5 * floor { floor.max(local_noise(pixels, &inliers)) } else { noise.max(floor) }
         }
     };
     let count =
@@ -111,7 +112,7 @@ pub fn rank(
             rank.normals = Some((rank.normal_deviations.iter().filter(extended).count() as u32).max(1));
         }
         (2, _) => {
-            if let Some(conic) = Conic::of(image, &inliers, &colors) {
+            if let Some(conic) = Conic::of(pixels, &inliers, &colors) {
                 rank.normal_deviations = colors.normals(&conic.c);
                 rank.normal_noise = 0.5 * conic.residual_deviation;
                 let noise = noise_of_residuals(&conic.c, &colors.moments, conic.residual_deviation);
@@ -141,9 +142,9 @@ struct Colors {
 
 impl Colors {
     #[inline(never)]
-    fn of(image: &Image, inliers: impl Fn(&Window) -> u64) -> Option<Self> {
+    fn of(pixels: &impl Pixels, inliers: impl Fn(&Window) -> u64) -> Option<Self> {
         let (mut sum, mut squares, mut count) = ([0.0; 3], [0.0; 6], 0_u64);
-        image.for_each_window(|window| {
+        pixels.for_each_window(|window| {
             let bits = inliers(window);
             for_each_bit(bits, |i| {
                 let [r, g, b] = window.pixel(i).map(f64::from);
@@ -190,21 +191,8 @@ fn noise_of_residuals(c: &Mat3, moments: &Mat3, deviation: f64) -> f64 {
 }
 
 /// The noise of a channel by second differences along rows, which a smooth surface does not show in.
-#[inline(never)]
-fn local_noise(image: &Image, inliers: impl Fn(&Window) -> u64) -> f64 {
-    let (mut sum, mut count) = (0.0, 0_u64);
-    image.for_each_window(|window| {
-        let bits = inliers(window);
-        let triples = bits & (bits >> 1) & (bits >> 2);
-        for_each_bit(triples, |i| {
-            let (left, middle, right) = (window.pixel(i), window.pixel(i + 1), window.pixel(i + 2));
-            for ((left, middle), right) in left.into_iter().zip(middle).zip(right) {
-                let difference = f64::from(left) - 2.0 * f64::from(middle) + f64::from(right);
-                sum += difference * difference;
-            }
-        });
-        count += u64::from(triples.count_ones());
-    });
+fn local_noise(pixels: &impl Pixels, inliers: impl Fn(&Window) -> u64) -> f64 {
+    let (sum, count) = pixels.second_differences(inliers);
     // Three channels; the weights 1, -2, 1 have the square sum 6.
     sqrt(sum / (18 * count.max(1)) as f64)
 }
@@ -218,7 +206,7 @@ struct Conic {
 impl Conic {
     /// Least squares in the plane of the two longest axes.
     #[inline(never)]
-    fn of(image: &Image, inliers: impl Fn(&Window) -> u64, colors: &Colors) -> Option<Self> {
+    fn of(pixels: &impl Pixels, inliers: impl Fn(&Window) -> u64, colors: &Colors) -> Option<Self> {
         let ([u, v, _], [largest, ..]) = (colors.eigen.vectors, colors.eigen.values);
         let scale = 1.0 / sqrt(largest);
         let (u, v) = (mat3::scale(u, scale), mat3::scale(v, scale));
@@ -228,7 +216,7 @@ impl Conic {
             let (x, y) = (mat3::dot(u, color), mat3::dot(v, color));
             [x * x, 2.0 * x * y, y * y]
         };
-        image.for_each_window(|window| {
+        pixels.for_each_window(|window| {
             let bits = inliers(window);
             for_each_bit(bits, |i| {
                 let row = terms(window.pixel(i));
@@ -244,7 +232,7 @@ impl Conic {
         let (inverse, _) = mat3::pseudo_inverse(&mat3::svd(&normal), 1e-14);
         let [a, b, d] = mat3::apply(&inverse, right);
         let mut residuals = 0.0;
-        image.for_each_window(|window| {
+        pixels.for_each_window(|window| {
             for_each_bit(inliers(window), |i| {
                 let residual = mat3::dot([a, b, d], terms(window.pixel(i))) - 1.0;
                 residuals += residual * residual;

@@ -128,10 +128,31 @@ impl Moments {
         if spread > 0.0 { sqrt(explained.max(0.0) / spread) } else { 0.0 }
     }
 
+    /// The sum of squared residuals about z, from the sums alone: good to the rounding of `count`.
+    #[must_use]
+    pub fn residual_sum(&self, z: &Coefficients) -> f64 {
+        let [rr, gg, bb, rg, rb, gb] = self.quadratic;
+        let right = [rr, gg, bb, 2.0 * rg, 2.0 * rb, 2.0 * gb];
+        let mut product = mat6::apply(&self.normal_matrix(), z);
+        for (entry, right) in product.iter_mut().zip(right) {
+            *entry -= 2.0 * right;
+        }
+        (mat6::dot(z, &product) + f64::from(self.count)).max(0.0)
+    }
+
     /// The least-squares z, and (M^T M)^-1; `None` when the colors do not determine z.
     #[must_use]
+    #[inline(never)]
     pub fn solve(&self) -> Option<LeastSquares> {
         let [rr, gg, bb, rg, rb, gb] = self.quadratic;
+        let inverse = self.inverse()?;
+        let coefficients = mat6::apply(&inverse, &[rr, gg, bb, 2.0 * rg, 2.0 * rb, 2.0 * gb]);
+        coefficients.iter().all(|c| c.is_finite()).then_some(LeastSquares { coefficients, inverse })
+    }
+
+    /// (M^T M)^-1; `None` when the colors do not determine z.
+    #[inline(never)]
+    fn inverse(&self) -> Option<[[f64; TERMS]; TERMS]> {
         let matrix = self.normal_matrix();
         // Cholesky of the matrix with a unit diagonal: its pivots then say how much of a column the others explain.
         let diagonal = mat6::diagonal(&matrix);
@@ -143,9 +164,7 @@ impl Moments {
         if mat6::diagonal(&factor).iter().any(|&pivot| pivot * pivot < SMALLEST_PIVOT) {
             return None;
         }
-        let inverse = mat6::scale(&mat6::inverse(&factor), &scale);
-        let coefficients = mat6::apply(&inverse, &[rr, gg, bb, 2.0 * rg, 2.0 * rb, 2.0 * gb]);
-        coefficients.iter().all(|c| c.is_finite()).then_some(LeastSquares { coefficients, inverse })
+        Some(mat6::scale(&mat6::inverse(&factor), &scale))
     }
 }
 

@@ -28,10 +28,11 @@ pub fn kth_smallest(values: &[f32], rank: usize) -> Option<f32> {
     if rank >= values.len() {
         return None;
     }
-    let mut rank = rank;
+    let mut rank = rank as u32;
     let (mut prefix, mut prefix_mask) = (0_u32, 0_u32);
     for pass in (0..PASSES).rev() {
-        let mut counts = [0_usize; BUCKETS];
+        // No more values than pixels.
+        let mut counts = [0_u32; BUCKETS];
         for &value in values {
             let key = key(value);
             if key & prefix_mask == prefix {
@@ -75,7 +76,7 @@ pub fn sort(values: &mut [f32], scratch: &mut [f32]) -> bool {
 }
 
 fn scatter(from: &[f32], to: &mut [f32], pass: u32) {
-    let mut starts = [0_usize; BUCKETS];
+    let mut starts = [0_u32; BUCKETS];
     for &value in from {
         starts[digit(key(value), pass)] += 1;
     }
@@ -87,7 +88,7 @@ fn scatter(from: &[f32], to: &mut [f32], pass: u32) {
     }
     for &value in from {
         let start = &mut starts[digit(key(value), pass)];
-        if let Some(slot) = to.get_mut(*start) {
+        if let Some(slot) = to.get_mut(*start as usize) {
             *slot = value;
         }
         *start += 1;

@@ -4,7 +4,7 @@ mod fallback;
 
 pub use fallback::SlantFallback;
 
-use crate::constrained_slant::{self, MAX_CANDIDATES};
+use crate::constrained_slant::{self, Candidates, MAX_CANDIDATES, SlantRoot};
 use crate::ellipsoid::{self, Ellipsoid};
 use crate::image::{Census, Image, Usable};
 use crate::inliers::{Band, Inliers};
@@ -14,6 +14,7 @@ use crate::lmeds::{self, Fit, FitError, Method};
 use crate::location::{self, Location};
 use crate::mat3;
 use crate::orientation::{self, Orientation, RANK_THRESHOLD};
+use crate::pixels::Pixels;
 use crate::rank::{self, Rank};
 use crate::tilt::{TiltEstimator, Tilts};
 use heapless::Vec;
@@ -22,7 +23,7 @@ use libm::{atan2, hypot};
 /// The noise that would make a degenerate scene look like this one must be so many times the noise there is. Degenerate
 /// scenes (cylinders, planes, cones, ramps, mixtures of colors, with and without noise) come to 0.2-1.1, photographs
 /// that give good normals to 1.9-6.7; at 1.5 nearly half of a coefficient of C can be bias.
-const SMALLEST_NOISE_MARGIN: f64 = 1.5;
+pub(crate) const SMALLEST_NOISE_MARGIN: f64 = 1.5;
 
 /// How the orthogonal transformation that the regression leaves open is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -200,61 +201,17 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         .get_mut(..workspace_len(pixels, params.lmeds.sample_size))
         .ok_or(FitError::WorkspaceTooShort)?;
     let usable = params.usable(image);
-    let mut solution = Solution {
-        outcome: Outcome::RankDeficient,
-        census: usable.count(image),
-        color_deviations: [0.0; 3],
-        rank: None,
-        fit: None,
-        norm_location: None,
-        inliers: Inliers::none(usable),
-        inlier_count: 0,
-        ellipsoid: None,
-        tilts: None,
-        joint: None,
-        choice: None,
-    };
-
-    let fit = match lmeds::fit(image, usable, &params.lmeds, workspace) {
-        Ok(fit) => fit,
-        Err(FitError::RankDeficient { color_deviations }) => {
-            let rank = rank::rank(image, Inliers::all(usable).selector(), None);
-            return Ok(Solution { color_deviations, rank, ..solution });
-        }
-        Err(error) => return Err(error),
-    };
-    solution.fit = Some(fit);
-    solution.color_deviations = fit.color_deviations;
-    solution.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
-    solution.inlier_count = fit.inliers;
-    // Outliers that least squares keeps are no noise: the robust dispersion leaves them out.
-    let deviation = match params.lmeds.method {
-        Method::LeastMedian => fit.residual_deviation,
-        Method::LeastSquares => fit.residual_deviation.min(fit.dispersion),
-    };
-    solution.rank = rank::rank(image, solution.inliers.selector(), Some((fit.z(), deviation)));
-    let share = if deviation < fit.residual_deviation { deviation / fit.residual_deviation } else { 1.0 };
-    let noise = fit.noise_deviation * share;
-    let is_determined = fit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * noise;
-    if !is_determined || solution.rank.is_some_and(|rank| rank.colors < 3) {
+    let mut solution = Solution::unsolved(usable.count(image), usable);
+    let fit = lmeds::fit(image, usable, &params.lmeds, workspace).map(|fit| solution.fit = Some(fit));
+    solution.model(image, fit, params, workspace)?;
+    if solution.outcome != Outcome::NoTilt {
         return Ok(solution);
     }
-
-    solution.outcome = Outcome::NotPositiveDefinite;
-    let Ok(ellipsoid) = ellipsoid::decompose(&fit.z()) else { return Ok(solution) };
-    solution.ellipsoid = Some(ellipsoid);
-    if solution.rank.is_some_and(|rank| !rank.is_full()) {
-        solution.outcome = Outcome::RankDeficient;
-        return Ok(solution);
-    }
-    solution.norm_location = location::norms(image, &solution.inliers, &fit.z(), workspace);
-    if let Some(norms) = solution.norm_location {
-        solution.inliers.norm = Band::norm(fit.z(), &norms, params.lmeds.rejection);
-        solution.inlier_count = solution.inliers.count(image);
-    }
-
     let inliers = solution.inliers;
-    if params.road == Road::Joint && !matches!(params.tilts, TiltEstimator::Given(_)) {
+    if params.road == Road::Joint
+        && !matches!(params.tilts, TiltEstimator::Given(_))
+        && let Some(ellipsoid) = solution.ellipsoid
+    {
         solution.joint = joint::estimate(image, inliers.selector(), &ellipsoid.root, workspace);
         if let Some(joint) = &solution.joint {
             let (tilts, choice) = oriented(joint, &ellipsoid, params.rank_threshold);
@@ -264,17 +221,12 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
             return Ok(solution);
         }
     }
-    solution.outcome = Outcome::NoTilt;
     solution.tilts = params.tilts.estimate(image, &inliers, workspace);
-    let Some(Tilts { tilts, .. }) = solution.tilts else { return Ok(solution) };
-
-    solution.outcome = Outcome::NoConsistentSlants;
+    let (Some(Tilts { tilts, .. }), Some(ellipsoid)) = (solution.tilts, solution.ellipsoid) else {
+        return Ok(solution);
+    };
     solution.choice = choose(image, &inliers, &ellipsoid, tilts, params, workspace);
-    match &solution.choice {
-        None => {}
-        Some(choice) if choice.orientation.rank < 3 => solution.outcome = Outcome::RankDeficient,
-        Some(_) => solution.outcome = Outcome::Solved,
-    }
+    solution.conclude();
     Ok(solution)
 }
 
@@ -290,6 +242,93 @@ fn oriented(joint: &Joint, ellipsoid: &Ellipsoid, rank_threshold: f64) -> (Tilts
     (tilts, choice)
 }
 
+impl Solution {
+    /// What is known before the fit.
+    pub(crate) fn unsolved(census: Census, usable: Usable) -> Self {
+        Self {
+            outcome: Outcome::RankDeficient,
+            census,
+            color_deviations: [0.0; 3],
+            rank: None,
+            fit: None,
+            norm_location: None,
+            inliers: Inliers::none(usable),
+            inlier_count: 0,
+            ellipsoid: None,
+            tilts: None,
+            joint: None,
+            choice: None,
+        }
+    }
+
+    /// From the fit, which is in its place unless it failed, to the inliers: everything that the places of the pixels mean nothing to. The outcome is
+    /// [`Outcome::NoTilt`] where tilts come next.
+    ///
+    /// # Errors
+    /// Those of the fit but [`FitError::RankDeficient`], which is an outcome.
+    ///
+    /// # Scratch
+    /// Two `f32` a pixel.
+    pub(crate) fn model(
+        &mut self,
+        pixels: &impl Pixels,
+        fit: Result<(), FitError>,
+        params: &Params,
+        workspace: &mut [f32],
+    ) -> Result<(), FitError> {
+        let usable = self.inliers.usable;
+        let fit = match (fit, &self.fit) {
+            (Ok(()), Some(fit)) => fit,
+            (Err(FitError::RankDeficient { color_deviations }), _) => {
+                self.color_deviations = color_deviations;
+                self.rank = rank::rank(pixels, Inliers::all(usable).selector(), None);
+                return Ok(());
+            }
+            (Err(error), _) => return Err(error),
+            (Ok(()), None) => return Ok(()),
+        };
+        self.color_deviations = fit.color_deviations;
+        self.inliers = Inliers { residual: fit.band, ..Inliers::all(usable) };
+        self.inlier_count = fit.inliers;
+        // Outliers that least squares keeps are no noise: the robust dispersion leaves them out.
+        let deviation = match params.lmeds.method {
+            Method::LeastMedian => fit.residual_deviation,
+            Method::LeastSquares => fit.residual_deviation.min(fit.dispersion),
+        };
+        self.rank = rank::rank(pixels, self.inliers.selector(), Some((fit.z(), deviation)));
+        let share = if deviation < fit.residual_deviation { deviation / fit.residual_deviation } else { 1.0 };
+        let noise = fit.noise_deviation * share;
+        let is_determined = fit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * noise;
+        if !is_determined || self.rank.is_some_and(|rank| rank.colors < 3) {
+            return Ok(());
+        }
+
+        self.outcome = Outcome::NotPositiveDefinite;
+        let Ok(ellipsoid) = ellipsoid::decompose(&fit.z()) else { return Ok(()) };
+        self.ellipsoid = Some(ellipsoid);
+        if self.rank.is_some_and(|rank| !rank.is_full()) {
+            self.outcome = Outcome::RankDeficient;
+            return Ok(());
+        }
+        self.norm_location = location::norms(pixels, &self.inliers, &fit.z(), workspace);
+        if let Some(norms) = self.norm_location {
+            self.inliers.norm = Band::norm(fit.z(), &norms, params.lmeds.rejection);
+            self.inlier_count = self.inliers.count(pixels);
+        }
+        self.outcome = Outcome::NoTilt;
+        Ok(())
+    }
+
+    /// Ends with the choice of slants that is in its place.
+    pub(crate) fn conclude(&mut self) {
+        self.outcome = match &self.choice {
+            None => Outcome::NoConsistentSlants,
+            Some(choice) if choice.orientation.rank < 3 => Outcome::RankDeficient,
+            Some(_) => Outcome::Solved,
+        };
+    }
+}
+
 /// The candidate slants for these tilts, and the one whose normals are most integrable (section 3.4, steps 4-8).
 fn choose(
     image: &Image,
@@ -299,38 +338,63 @@ fn choose(
     params: &Params,
     workspace: &mut [f32],
 ) -> Option<Choice> {
-    let orient = |slants| {
-        Orientation::new(orientation::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
-    };
+    let orient = |slants| orient(ellipsoid, slants, tilts, params);
     let selector = inliers.selector();
-    let roots = constrained_slant::roots(tilts, ellipsoid.cosines);
-    let mut candidates = Vec::new();
-    for root in &roots {
-        let orientation = orient(root.slants);
-        #[expect(
-            clippy::needless_borrows_for_generic_args,
-            reason = "so that one instance serves tilts_given too"
-        )]
-        let integral = if orientation.rank == 3 {
-            integrability::integral(image, &selector, &orientation.f_inverse)
-        } else {
-            None
-        };
-        let candidate = Candidate {
-            slants: root.slants,
-            branch: root.branch,
-            residual: root.residual,
-            integral: integral.map_or(f64::INFINITY, |integral| integral.mean),
-        };
-        // There are no more roots than candidates have room.
-        let _ = candidates.push(candidate);
+    let mut choice = Choice::among(&constrained_slant::roots(tilts, ellipsoid.cosines));
+    for candidate in &mut choice.candidates {
+        let orientation = orient(candidate.slants);
+        if orientation.rank == 3 {
+            #[expect(
+                clippy::needless_borrows_for_generic_args,
+                reason = "so that one instance serves tilts_given too"
+            )]
+            let integral = integrability::integral(image, &selector, &orientation.f_inverse);
+            candidate.integral = integral.map_or(f64::INFINITY, |integral| integral.mean);
+        }
     }
-    let best = candidates.iter().enumerate().min_by(|(_, a), (_, b)| a.integral.total_cmp(&b.integral));
-    if let Some((chosen, &Candidate { slants, .. })) = best {
-        let orientation = orient(slants);
-        return Some(Choice { slants, source: SlantSource::Root, candidates, chosen, orientation });
+    if let Some((chosen, slants)) = choice.most_integrable() {
+        (choice.chosen, choice.slants) = (chosen, slants);
+    } else {
+        let fallback = params.fallback;
+        (choice.slants, choice.source) =
+            fallback::slants(fallback, image, inliers, ellipsoid, tilts, workspace)?;
     }
-    let (slants, source) = fallback::slants(params.fallback, image, inliers, ellipsoid, tilts, workspace)?;
-    let orientation = orient(slants);
-    Some(Choice { slants, source, candidates, chosen: 0, orientation })
+    choice.orientation = orient(choice.slants);
+    Some(choice)
+}
+
+impl Choice {
+    /// No choice yet among these roots of eqs. 25, whose integrals are not known.
+    pub(crate) fn among(roots: &Candidates) -> Self {
+        let mut candidates = Vec::new();
+        for &SlantRoot { slants, branch, residual } in roots {
+            // There are no more roots than candidates have room.
+            let _ = candidates.push(Candidate { slants, branch, residual, integral: f64::INFINITY });
+        }
+        Self {
+            slants: [0.0; 3],
+            source: SlantSource::Root,
+            candidates,
+            chosen: 0,
+            orientation: Orientation::NONE,
+        }
+    }
+
+    /// Which candidate has the least integral, and its slants.
+    pub(crate) fn most_integrable(&self) -> Option<(usize, [f64; 3])> {
+        let candidates = self.candidates.iter().enumerate();
+        let least = candidates.min_by(|(_, a), (_, b)| a.integral.total_cmp(&b.integral));
+        least.map(|(chosen, candidate)| (chosen, candidate.slants))
+    }
+}
+
+/// F from the lengths of its rows, their slants and tilts.
+#[inline(never)]
+pub(crate) fn orient(
+    ellipsoid: &Ellipsoid,
+    slants: [f64; 3],
+    tilts: [f64; 3],
+    params: &Params,
+) -> Orientation {
+    Orientation::new(orientation::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
 }

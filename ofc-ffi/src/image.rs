@@ -112,6 +112,11 @@ pub(crate) fn interleaved_layout(format: ofc_pixel_format) -> Result<(Sample, Or
     }
 }
 
+/// How a format stores samples.
+pub(crate) fn sample_type(format: ofc_pixel_format) -> Result<Sample, ofc_status> {
+    layout(format).map(|(sample, _)| sample)
+}
+
 fn checked_span(width: usize, height: usize, pixel_bytes: usize, stride: usize) -> Result<usize, ofc_status> {
     span(width, height, pixel_bytes, stride).map_err(of_image_error)
 }

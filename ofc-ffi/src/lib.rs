@@ -18,6 +18,7 @@ mod segment;
 mod slants;
 mod solve;
 mod status;
+mod stream;
 mod types;
 mod version;
 
@@ -34,6 +35,7 @@ pub use segment::*;
 pub use slants::*;
 pub use solve::*;
 pub use status::*;
+pub use stream::*;
 pub use types::*;
 pub use version::*;
 

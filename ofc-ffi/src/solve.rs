@@ -166,7 +166,7 @@ unsafe impl Plain for ofc_confidence {}
 unsafe impl Plain for ofc_solution {}
 
 impl ofc_solve_params {
-    fn defaults() -> Self {
+    pub(crate) fn defaults() -> Self {
         let Params { lmeds: _, saturation: _, road: _, tilts: _, rank_threshold, fallback: _ } =
             Params::default();
         Self {
@@ -180,7 +180,7 @@ impl ofc_solve_params {
         }
     }
 
-    fn check(self) -> Result<Params, ofc_status> {
+    pub(crate) fn check(self) -> Result<Params, ofc_status> {
         let Self { lmeds, rank_threshold, tilt_rad, tilt_estimator, slant_fallback, road, reserved } = self;
         if reserved != [0; 5] {
             return Err(OFC_STATUS_RESERVED_NOT_ZERO);

@@ -4,6 +4,7 @@ use core::ffi::{CStr, c_char};
 use ofc_core::image::ImageError;
 use ofc_core::lmeds::FitError;
 use ofc_core::solve::Outcome;
+use ofc_core::stream::StreamError;
 
 /// The result of a call: 0 is success; negative is an error that leaves every output as it was; positive is a sound
 /// question without a full answer, and each call says what it writes then. Numbers are never reused.
@@ -23,6 +24,8 @@ pub const OFC_STATUS_NO_TILT: i32 = 3;
 pub const OFC_STATUS_NO_CONSISTENT_SLANTS: i32 = 4;
 /// An iteration ended before it reached its tolerance; the result is what it had reached.
 pub const OFC_STATUS_NOT_CONVERGED: i32 = 5;
+/// The stream's model no longer fits the frame: the next frame is for colors. The old model serves until it is replaced.
+pub const OFC_STATUS_COLD_START_NEEDED: i32 = 6;
 
 /// A pointer that must not be NULL is.
 pub const OFC_STATUS_NULL_POINTER: i32 = -10;
@@ -59,6 +62,19 @@ pub const OFC_STATUS_SATURATED: i32 = -42;
 /// No two by two square of inliers to take differences on.
 pub const OFC_STATUS_NO_CELLS: i32 = -43;
 
+/// There is no stream at this address: ofc_stream_init() was not called, or something wrote over it.
+pub const OFC_STATUS_NO_STREAM: i32 = -50;
+/// No frame was begun.
+pub const OFC_STATUS_NO_FRAME: i32 = -51;
+/// A row comes twice, or one before it is missing. The frame goes on as if the call had not been.
+pub const OFC_STATUS_ROW_ORDER: i32 = -52;
+/// The frame has all its rows.
+pub const OFC_STATUS_TOO_MANY_ROWS: i32 = -53;
+/// The frame ended before its last row: it is forgotten, and its pass is still to come.
+pub const OFC_STATUS_TOO_FEW_ROWS: i32 = -54;
+/// This is not one row of the stream's width and sample type.
+pub const OFC_STATUS_ROW_MISMATCH: i32 = -55;
+
 fn message(status: ofc_status) -> &'static CStr {
     match status {
         OFC_STATUS_OK => c"success",
@@ -67,6 +83,7 @@ fn message(status: ofc_status) -> &'static CStr {
         OFC_STATUS_NO_TILT => c"no tilt: a channel has no mean gradient over the inliers",
         OFC_STATUS_NO_CONSISTENT_SLANTS => c"no slants are consistent with the tilts and the cosines (eqs. 25 have no root)",
         OFC_STATUS_NOT_CONVERGED => c"not converged: the iteration ended before it reached its tolerance",
+        OFC_STATUS_COLD_START_NEEDED => c"the model no longer fits: a cold start is needed",
         OFC_STATUS_NULL_POINTER => c"a pointer is NULL",
         OFC_STATUS_MISALIGNED => c"a pointer or stride is not aligned for its type",
         OFC_STATUS_OVERLAP => c"an output overlaps another buffer",
@@ -82,6 +99,12 @@ fn message(status: ofc_status) -> &'static CStr {
         OFC_STATUS_DARK => c"too few usable pixels: most are black",
         OFC_STATUS_SATURATED => c"too few usable pixels: most are saturated",
         OFC_STATUS_NO_CELLS => c"no cell of four neighbouring inliers",
+        OFC_STATUS_NO_STREAM => c"no stream is initialised at this address",
+        OFC_STATUS_NO_FRAME => c"no frame was begun",
+        OFC_STATUS_ROW_ORDER => c"a row is out of order",
+        OFC_STATUS_TOO_MANY_ROWS => c"the frame has all its rows",
+        OFC_STATUS_TOO_FEW_ROWS => c"the frame ended before its last row",
+        OFC_STATUS_ROW_MISMATCH => c"not one row of the stream's width and sample type",
         _ => c"unknown status",
     }
 }
@@ -110,6 +133,22 @@ pub(crate) const fn of_fit_error(error: FitError) -> ofc_status {
         FitError::Dark => OFC_STATUS_DARK,
         FitError::Saturated => OFC_STATUS_SATURATED,
         FitError::RankDeficient { .. } => OFC_STATUS_RANK_DEFICIENT,
+    }
+}
+
+/// The status of a stream's refusal.
+pub(crate) const fn of_stream_error(error: StreamError) -> ofc_status {
+    match error {
+        StreamError::Params => OFC_STATUS_INVALID_PARAMETER,
+        StreamError::Size => OFC_STATUS_TOO_LARGE,
+        StreamError::TooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
+        StreamError::NoFrame => OFC_STATUS_NO_FRAME,
+        StreamError::NotSolved => OFC_STATUS_NOT_SOLVED,
+        StreamError::RowOrder => OFC_STATUS_ROW_ORDER,
+        StreamError::TooManyRows => OFC_STATUS_TOO_MANY_ROWS,
+        StreamError::TooFewRows => OFC_STATUS_TOO_FEW_ROWS,
+        StreamError::Row => OFC_STATUS_ROW_MISMATCH,
+        StreamError::Fit(error) => of_fit_error(error),
     }
 }
 

@@ -298,7 +298,7 @@ static void messages_and_version(void **state)
 {
     (void)state;
     static const ofc_status all[] = {0,   1,   2,   3,   4,   -10, -11, -12, -20, -21, -22,
-                                     -23, -30, -31, -32, -33, -40, -41, -42, -43};
+                                     -23, -30, -31, -32, -33, -40, -41, -42, -43, -50, -51, -52, -53, -54, -55, 5, 6};
     const size_t count = sizeof all / sizeof *all;
     const char *unknown = ofc_status_message(12345);
     assert_string_equal(unknown, ofc_status_message(INT32_MIN));

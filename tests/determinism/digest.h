@@ -41,5 +41,8 @@ void mix_solve_params(const ofc_solve_params *params);
 void mix_render_params(const ofc_render_params *params);
 void mix_annealing_params(const ofc_annealing_params *params);
 void mix_segment_params(const ofc_segment_params *params);
+void mix_depth_params(const ofc_depth_params *params);
+void mix_depth_result(const ofc_depth_result *result);
+void mix_drift(const ofc_stream_drift *drift);
 
 #endif

@@ -128,6 +128,12 @@ void mix_solution(const ofc_solution *solution)
     mix_ellipsoid(&solution->ellipsoid);
     mix_tilts(&solution->tilts);
     ARRAY(solution->slant_rad);
+    ARRAY(solution->confidence.covariance);
+    NUMBER(solution->confidence.error_rad);
+    NUMBER(solution->confidence.dome);
+    NUMBER(solution->confidence.second_best);
+    INTEGER(solution->confidence.evidence);
+    INTEGER(solution->confidence.reserved);
     for (int i = 0; i < OFC_MAX_CANDIDATES; i++)
         mix_slants(&solution->candidates[i]);
     mix_orientation(&solution->orientation);
@@ -143,9 +149,14 @@ void mix_check(const ofc_check_result *result)
     mix_tilts(&result->relit_tilts);
     ARRAY(result->tilt_difference_rad);
     ARRAY(result->tilt_residual_rad);
+    NUMBER(result->depth_angle_median_rad);
+    mix_tilts(&result->depth_tilts);
+    ARRAY(result->depth_tilt_difference_rad);
     NUMBER(result->largest_p);
     INTEGER(result->inlier_count);
     INTEGER(result->has_tilts);
+    INTEGER(result->depth_pixel_count);
+    INTEGER(result->has_depth_tilts);
 }
 
 void mix_disc(const ofc_disc *disc)
@@ -223,6 +234,7 @@ void mix_solve_params(const ofc_solve_params *params)
     ARRAY(params->tilt_rad);
     INTEGER(params->tilt_estimator);
     INTEGER(params->slant_fallback);
+    INTEGER(params->road);
     INTEGERS(params->reserved);
 }
 
@@ -259,4 +271,37 @@ void mix_segment_params(const ofc_segment_params *params)
     INTEGER(params->reach);
     INTEGER(params->refits);
     INTEGERS(params->reserved);
+}
+
+void mix_depth_params(const ofc_depth_params *params)
+{
+    NUMBER(params->pixel_pitch);
+    NUMBER(params->tolerance);
+    NUMBER(params->min_n3);
+    NUMBER(params->prior_weight);
+    NUMBER(params->smoothness);
+    INTEGER(params->method);
+    INTEGER(params->max_cycles);
+    INTEGERS(params->reserved);
+}
+
+void mix_depth_result(const ofc_depth_result *result)
+{
+    NUMBER(result->residual);
+    INTEGER(result->cycles);
+    INTEGER(result->regions);
+    INTEGER(result->pixel_count);
+    INTEGER(result->excluded_count);
+    INTEGER(result->converged);
+    INTEGER(result->reserved);
+}
+
+void mix_drift(const ofc_stream_drift *drift)
+{
+    NUMBER(drift->inlier_share);
+    ARRAY(drift->angle_rad);
+    ARRAY(drift->strength_ratio);
+    NUMBER(drift->dispersion_ratio);
+    INTEGER(drift->refined);
+    INTEGER(drift->reserved);
 }

@@ -5,7 +5,8 @@
 
 #include "board.h"
 
-uint64_t workspace[OFC_SEGMENT_WORKSPACE_SIZE(WIDTH, HEIGHT) / sizeof(uint64_t)];
+uint64_t workspace[OFC_SIZE_OF_LARGER(OFC_SEGMENT_WORKSPACE_SIZE(WIDTH, HEIGHT), OFC_DEPTH_WORKSPACE_SIZE(WIDTH, HEIGHT)) /
+                   sizeof(uint64_t) + 1];
 const size_t workspace_bytes = sizeof workspace;
 float normals[PIXELS * 3];
 uint8_t marks[PIXELS];
@@ -43,6 +44,8 @@ int main(void)
         print(scenes[i].name, "segments and ranks");
         mix_solve(&image, i);
         print(scenes[i].name, "solve");
+        mix_stream(&image);
+        print(scenes[i].name, "stream");
     }
     board_print("done\n");
     return 0;

@@ -27,6 +27,13 @@ void digest_constants(void)
     mix_annealing_params(&annealing);
     mix_status(ofc_segment_params_default(&segment));
     mix_segment_params(&segment);
+    ofc_depth_params depth;
+    ofc_stream_params stream;
+    mix_status(ofc_depth_params_default(&depth));
+    mix_depth_params(&depth);
+    mix_status(ofc_stream_params_default(&stream));
+    mix_solve_params(&stream.solve);
+    mix_doubles(&stream.smallest_share, 1);
     for (int32_t width = -1; width < 5000; width += 617)
         for (int32_t height = 1; height < 4000; height += 977) {
             mix_integer(ofc_lmeds_workspace_size(width, height, &lmeds));
@@ -36,6 +43,8 @@ void digest_constants(void)
             mix_integer(ofc_largest_disc_workspace_size(width, height));
             mix_integer(ofc_check_workspace_size(width, height));
             mix_integer(ofc_segment_workspace_size(width, height));
+            mix_integer(ofc_depth_workspace_size(width, height));
+            mix_integer(ofc_stream_size(width, height, &stream));
             mix_integer(ofc_orthogonal_annealing_workspace_size(width, height, &annealing));
             mix_integer(ofc_constrained_slants_integrable_workspace_size(width, height, 500));
             mix_integer((uint32_t)ofc_rank_patches_count(width, 7));
@@ -55,7 +64,7 @@ static void random_numbers(double *numbers, int count, double scale)
 
 static void mix_constrained_slants(void)
 {
-    double tilts[3], cosines[3], sigma[33], f[33];
+    double tilts[3], cosines[3], along[33][3], f[33];
     ofc_slants candidates[OFC_MAX_CANDIDATES], nearest;
     random_numbers(tilts, 3, 3.14);
     random_numbers(cosines, 3, 1);
@@ -66,8 +75,8 @@ static void mix_constrained_slants(void)
     mix_status(ofc_constrained_slants_nearest(tilts, cosines, &nearest));
     mix_slants(&nearest);
     for (int branch = 1; branch <= 8; branch += 3) {
-        mix_status(ofc_slant_curve_sample(tilts, cosines, branch, 33, sigma, f));
-        mix_doubles(sigma, 33);
+        mix_status(ofc_slant_curve_sample(tilts, cosines, branch, 33, along[0], f));
+        mix_doubles(along[0], 99);
         mix_doubles(f, 33);
     }
 }

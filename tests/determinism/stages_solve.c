@@ -46,7 +46,10 @@ static void solve(const ofc_image *image, const ofc_solve_params *params)
         return;
     mix_status(ofc_normals_compute(image, &solution, normals, WIDTH * 3 * sizeof(float)));
     mix_floats(normals, image->height * image->width * 3);
-    mix_status(ofc_check(image, &solution, workspace, workspace_bytes, &result));
+    mix_status(ofc_check(image, &solution, NULL, workspace, workspace_bytes, &result));
+    mix_check(&result);
+    const ofc_depth_map surface = mix_depth(image);
+    mix_status(ofc_check(image, &solution, &surface, workspace, workspace_bytes, &result));
     mix_check(&result);
 }
 
@@ -57,6 +60,9 @@ void mix_solve(const ofc_image *image, int variant)
     params.lmeds.subsets = 20;
     params.lmeds.sample_size = 400;
     params.lmeds.seed = 9;
+    solve(image, &params);
+    params.road = OFC_ROAD_PAPER;
+    params.tilt_estimator = OFC_TILT_PENTLAND;
     solve(image, &params);
     params.tilt_estimator = OFC_TILT_LEE_ROSENFELD + variant % 3;
     solve(image, &params);

@@ -1,6 +1,7 @@
 //! Oracles, scenes and loaders that the tests share.
 #![allow(clippy::missing_panics_doc, clippy::must_use_candidate, reason = "a panic is how a test fails")]
 
+pub mod bust;
 pub mod call_graph;
 pub mod depth_maps;
 pub mod depth_oracle;

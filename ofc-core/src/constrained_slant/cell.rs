@@ -21,6 +21,14 @@ pub(super) struct Interval {
 }
 
 impl Interval {
+    pub(super) const fn between(low: f64, high: f64) -> Self {
+        Self { low, high }
+    }
+
+    pub(super) const fn ends(self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
     pub(super) fn middle(self) -> f64 {
         0.5 * (self.low + self.high)
     }

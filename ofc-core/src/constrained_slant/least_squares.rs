@@ -51,17 +51,26 @@ const SMALLEST_DAMPING: f64 = 1e-12;
 /// For input that is not finite or has a cosine beyond 2: slants zero, residuals infinite.
 ///
 /// # Scratch
-/// About 10 kB of stack.
+/// About 5 kB of stack.
 ///
 /// # Reference
 /// Section 3.3: if there are no solutions, "fall back".
 #[must_use]
 pub fn least_squares(tilts: [f64; 3], cosines: [f64; 3]) -> NearestSlants {
-    let Some(constraints) = Constraints::new(tilts, cosines) else { return NearestSlants::NONE };
-    if let Some(root) = roots(tilts, cosines).first() {
+    if let Some(constraints) = Constraints::new(tilts, cosines)
+        && let Some(root) = roots(tilts, cosines).first()
+    {
         return NearestSlants::at(&constraints, root.slants);
     }
+    without_roots(tilts, cosines)
+}
+
+/// [`least_squares()`] of equations that have no root, with less than 2 kB of stack.
+#[must_use]
+#[inline(never)]
+pub fn without_roots(tilts: [f64; 3], cosines: [f64; 3]) -> NearestSlants {
     let mut best = NearestSlants::NONE;
+    let Some(constraints) = Constraints::new(tilts, cosines) else { return best };
     for start in starts(&constraints) {
         let nearest = NearestSlants::at(&constraints, descend(&constraints, start.slants));
         if nearest.residual_rms < best.residual_rms {
@@ -77,35 +86,54 @@ struct Start {
     slants: [f64; 3],
 }
 
-/// The squared residual of one pair of channels at all pairs of slants of the grid.
-type PairCosts = [[f64; GRID]; GRID];
+/// The squared residual of one pair of channels at one slant, beside the grid infinite, and all slants of the other.
+type Costs = [f64; GRID];
+/// The same at a slant of the grid and those before and behind it.
+type Around = [Costs; 3];
 
 /// The best local minima of the grid, best first.
+#[inline(never)]
 fn starts(constraints: &Constraints) -> heapless::Vec<Start, MAX_STARTS> {
-    let [c12, c13, c23] = pair_costs(constraints);
-    let cost = |i: usize, j: usize, k: usize| {
-        let at = |costs: &PairCosts, a: usize, b: usize| {
-            costs.get(a).and_then(|row| row.get(b)).copied().unwrap_or(f64::INFINITY)
-        };
-        at(&c12, i, j) + at(&c13, i, k) + at(&c23, j, k)
+    let mut sines = [(0.0, 0.0); GRID];
+    for (i, sine) in sines.iter_mut().enumerate() {
+        *sine = sincos(grid_slant(i));
+    }
+    let ([k12, k13, k23], [h12, h13, h23]) = (constraints.k, constraints.h);
+    let cost = |k: f64, h: f64, i: usize, j: usize| {
+        let (Some(&i), Some(&j)) = (sines.get(i), sines.get(j)) else { return f64::INFINITY };
+        let (cosine, _) = super::pair(k, i, j);
+        (cosine - h) * (cosine - h)
+    };
+    // Beyond the grid the cost is infinite: one below zero wraps around to a very large index.
+    let around = |k: f64, h: f64, i: usize| -> Around {
+        [i.wrapping_sub(1), i, i + 1].map(|i| core::array::from_fn(|j| cost(k, h, i, j)))
     };
     let mut starts = heapless::Vec::new();
     for i in 0..GRID {
+        let c13 = around(k13, h13, i);
         for j in 0..GRID {
+            let c23 = around(k23, h23, j);
+            let c12 = |i, j| cost(k12, h12, i, j);
+            let (im, jm) = (i.wrapping_sub(1), j.wrapping_sub(1));
+            let (here, north, south) = (c12(i, j), c12(im, j), c12(i + 1, j));
+            let (west, east) = (c12(i, jm), c12(i, j + 1));
+            let sum = |c12: f64, c13: &Costs, c23: &Costs, k: usize| {
+                let at = |costs: &Costs| costs.get(k).copied().unwrap_or(f64::INFINITY);
+                c12 + at(c13) + at(c23)
+            };
+            let ([c13_before, c13, c13_behind], [c23_before, c23, c23_behind]) = (&c13, &c23);
             for k in 0..GRID {
-                let here = cost(i, j, k);
-                // Beyond the grid the cost is infinite: one below zero wraps around to a very large index.
-                let (im, jm, km) = (i.wrapping_sub(1), j.wrapping_sub(1), k.wrapping_sub(1));
-                let around = [
-                    cost(im, j, k),
-                    cost(i + 1, j, k),
-                    cost(i, jm, k),
-                    cost(i, j + 1, k),
-                    cost(i, j, km),
-                    cost(i, j, k + 1),
+                let cost = sum(here, c13, c23, k);
+                let neighbours = [
+                    sum(north, c13_before, c23, k),
+                    sum(south, c13_behind, c23, k),
+                    sum(west, c13, c23_before, k),
+                    sum(east, c13, c23_behind, k),
+                    sum(here, c13, c23, k.wrapping_sub(1)),
+                    sum(here, c13, c23, k + 1),
                 ];
-                if around.iter().all(|&neighbour| here <= neighbour) {
-                    keep(&mut starts, Start { cost: here, slants: [i, j, k].map(grid_slant) });
+                if neighbours.iter().all(|&neighbour| cost <= neighbour) {
+                    keep(&mut starts, Start { cost, slants: [i, j, k].map(grid_slant) });
                 }
             }
         }
@@ -115,20 +143,6 @@ fn starts(constraints: &Constraints) -> heapless::Vec<Start, MAX_STARTS> {
 
 fn grid_slant(index: usize) -> f64 {
     (index as f64 + 0.5) * (FRAC_PI_2 / GRID as f64)
-}
-
-/// Costs of the pairs 12, 13, 23, by the indices of the two slants.
-fn pair_costs(constraints: &Constraints) -> [PairCosts; 3] {
-    let mut costs = [[[0.0; GRID]; GRID]; 3];
-    for ((costs, k), h) in costs.iter_mut().zip(constraints.k).zip(constraints.h) {
-        for (i, row) in costs.iter_mut().enumerate() {
-            for (j, cost) in row.iter_mut().enumerate() {
-                let (cosine, _) = super::pair(k, sincos(grid_slant(i)), sincos(grid_slant(j)));
-                *cost = (cosine - h) * (cosine - h);
-            }
-        }
-    }
-    costs
 }
 
 /// Keeps the list sorted; what does not fit at its end is dropped.

@@ -17,6 +17,7 @@
 use super::cell::{Cell, Frame, Interval, OVERHANG, ZERO, half_width, halves};
 use super::curve::branch_of;
 use super::least_squares::descend;
+use super::waiting::{Lent, MAX_WAITING, Waiting};
 use super::{Candidates, Constraints, SlantRoot, clamp, difference, max_abs};
 use crate::mat3;
 
@@ -36,8 +37,6 @@ const FINE: Resolution = Resolution { leaf: 5e-7, same: 1e-7, max_leaves: 1000 }
 const COARSE: Resolution = Resolution { leaf: 0.02, same: 0.2, max_leaves: MAX_BOXES };
 /// Boxes looked at. Random lights need 120 on average; it is thousands when lights are nearly in one plane.
 const MAX_BOXES: usize = 30_000;
-/// Boxes that wait: one for each time the first box is halved in each direction down to [`FINE`] (at most 66), and some.
-const MAX_WAITING: usize = 72;
 /// Newton steps from a leaf.
 const MAX_STEPS: usize = 12;
 /// Singular values below this share of the largest are not inverted.
@@ -65,26 +64,48 @@ const SINGULAR: f64 = 1e-9;
 #[must_use]
 pub fn roots(tilts: [f64; 3], cosines: [f64; 3]) -> Candidates {
     let mut found = Candidates::new();
+    solutions(tilts, cosines, &mut heapless::Vec::<Cell, MAX_WAITING>::new(), &mut found);
+    found
+}
+
+/// [`roots`] with less than 2 kB of stack, into `found`; false, with nothing done, where `room` is shorter than [`ROOM`].
+///
+/// # Scratch
+/// [`ROOM`] `f32`; what they hold before does not matter.
+pub fn roots_within(tilts: [f64; 3], cosines: [f64; 3], room: &mut [f32], found: &mut Candidates) -> bool {
+    let Some(mut waiting) = Lent::new(room) else { return false };
+    solutions(tilts, cosines, &mut waiting, found);
+    true
+}
+
+fn solutions(tilts: [f64; 3], cosines: [f64; 3], waiting: &mut impl Waiting, found: &mut Candidates) {
+    found.clear();
     if let Some(constraints) = Constraints::new(tilts, cosines) {
-        let complete = search(&constraints, &FINE, &mut found);
+        let complete = search(&constraints, &FINE, waiting, found);
         if !complete {
             found.clear();
-            search(&constraints, &COARSE, &mut found);
+            search(&constraints, &COARSE, waiting, found);
         }
     }
-    sorted(&found)
+    sort(found);
 }
 
 /// Collects the solutions; false when the boxes were too many.
-fn search(constraints: &Constraints, resolution: &Resolution, found: &mut Candidates) -> bool {
+#[inline(never)]
+fn search(
+    constraints: &Constraints,
+    resolution: &Resolution,
+    waiting: &mut impl Waiting,
+    found: &mut Candidates,
+) -> bool {
     let frame = Frame::new(constraints);
-    let mut waiting = heapless::Vec::<Cell, MAX_WAITING>::new();
+    waiting.forget();
     let mut next = Some(frame.everything());
     let mut leaves = 0;
     for _ in 0..MAX_BOXES {
         let Some(cell) = next else { return true };
         next = match frame.narrow(cell) {
-            None => waiting.pop(),
+            None => waiting.take(),
             Some(narrowed) if half_width(narrowed) <= resolution.leaf => {
                 leaves += 1;
                 if leaves > resolution.max_leaves {
@@ -94,12 +115,12 @@ fn search(constraints: &Constraints, resolution: &Resolution, found: &mut Candid
                 if let Some(root) = polish(constraints, middle) {
                     insert(constraints, root, resolution.same, found);
                 }
-                waiting.pop()
+                waiting.take()
             }
             Some(narrowed) if half_width(narrowed) <= 0.5 * half_width(cell) => Some(narrowed),
             Some(narrowed) => {
                 let (low, high) = halves(narrowed);
-                if waiting.push(high).is_err() {
+                if !waiting.put(high) {
                     return false;
                 }
                 Some(low)
@@ -111,6 +132,7 @@ fn search(constraints: &Constraints, resolution: &Resolution, found: &mut Candid
 
 /// The solution that Newton's method reaches, if it is one. The steps are the shortest that solve the linear
 /// equations, so singular derivatives are no obstacle.
+#[inline(never)]
 fn polish(constraints: &Constraints, start: [f64; 3]) -> Option<SlantRoot> {
     let (mut best, mut best_residual) = (start, f64::INFINITY);
     let mut slants = start;
@@ -161,19 +183,17 @@ fn is_same(constraints: &Constraints, a: [f64; 3], b: [f64; 3], same: f64) -> bo
     max_abs([d1, d2, d3]) <= same || [0.25, 0.5, 0.75].into_iter().all(|share| between(share) <= ZERO)
 }
 
-fn sorted(found: &Candidates) -> Candidates {
-    let mut sorted = Candidates::new();
-    for root in found {
-        let mut carried = *root;
-        for slot in &mut sorted {
-            if carried.slants < slot.slants {
-                core::mem::swap(slot, &mut carried);
+/// Ascending by the first slant.
+fn sort(found: &mut Candidates) {
+    for end in 2..=found.len() {
+        for last in (2..=end).rev() {
+            if let Some([.., before, after]) = found.get_mut(..last)
+                && after.slants < before.slants
+            {
+                core::mem::swap(before, after);
             }
         }
-        // As much room as in `found`.
-        let _ = sorted.push(carried);
     }
-    sorted
 }
 
 #[cfg(test)]
@@ -306,7 +326,9 @@ mod tests {
         let mut rng = Rng::new(9);
         for _ in 0..500 {
             let (_, tilts, cosines) = random_case(&mut rng);
-            assert!(search(&Constraints::new(tilts, cosines).unwrap(), &FINE, &mut Candidates::new()));
+            let constraints = Constraints::new(tilts, cosines).unwrap();
+            let mut waiting = heapless::Vec::<Cell, MAX_WAITING>::new();
+            assert!(search(&constraints, &FINE, &mut waiting, &mut Candidates::new()));
         }
         // Three equal lights: any common slant will do.
         let found = roots([1.0; 3], [1.0; 3]);

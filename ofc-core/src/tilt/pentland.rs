@@ -11,7 +11,7 @@ use core::f64::consts::FRAC_1_SQRT_2;
 use libm::{atan2, hypot};
 
 /// The mean difference along one direction.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Mean {
     sums: [f64; 3],
     count: u64,
@@ -45,6 +45,50 @@ impl Mean {
     }
 }
 
+/// The differences between neighbouring inliers along the axes and the diagonals, summed over blocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sums {
+    east: Mean,
+    north: Mean,
+    north_east: Mean,
+    north_west: Mean,
+}
+
+impl Sums {
+    /// Adds the pairs of one block.
+    pub fn add(&mut self, block: &Block) {
+        self.add_of(block, |window, i| window.pixel(i).map(f64::from));
+    }
+
+    fn add_of(&mut self, block: &Block, value: impl Fn(&Window, usize) -> [f64; 3]) {
+        let (top, bottom) = (&block.top, &block.bottom);
+        self.east.add(block.horizontal(), (top, 1), (top, 0), &value);
+        self.north.add(block.vertical(), (top, 0), (bottom, 0), &value);
+        self.north_east.add(block.rising(), (top, 1), (bottom, 0), &value);
+        self.north_west.add(block.falling(), (top, 0), (bottom, 1), &value);
+    }
+
+    /// The tilts; `None` when a direction has no pair of inliers, or a channel's mean gradient is zero.
+    #[must_use]
+    pub fn tilts(&self) -> Option<Tilts> {
+        let mut result = Tilts { tilts: [0.0; 3], gradients: [[0.0; 2]; 3] };
+        for (channel, (tilt, gradient)) in result.tilts.iter_mut().zip(&mut result.gradients).enumerate() {
+            let (e, n) = (self.east.mean(channel, 1.0)?, self.north.mean(channel, 1.0)?);
+            let ne = self.north_east.mean(channel, FRAC_1_SQRT_2)?;
+            let nw = self.north_west.mean(channel, FRAC_1_SQRT_2)?;
+            // Least squares of eq. 20 over the four unit directions, whose normal matrix is twice the identity.
+            let ix = 0.5 * (e + FRAC_1_SQRT_2 * (ne - nw));
+            let iy = 0.5 * (n + FRAC_1_SQRT_2 * (ne + nw));
+            if !has_direction(ix, iy) {
+                return None;
+            }
+            *tilt = atan2(iy, ix);
+            *gradient = [ix, iy];
+        }
+        Some(result)
+    }
+}
+
 /// The tilts from differences between neighbouring inliers along the axes and the diagonals.
 ///
 /// `inliers` gives the bits of a window's inliers. `None` when a direction has no pair of inliers, or a channel's mean
@@ -59,29 +103,9 @@ pub fn tilts_of(
     inliers: impl Fn(&Window) -> u64,
     value: impl Fn(&Window, usize) -> [f64; 3],
 ) -> Option<Tilts> {
-    let (mut east, mut north, mut north_east, mut north_west) =
-        (Mean::default(), Mean::default(), Mean::default(), Mean::default());
-    for_each_block(image, inliers, |block: &Block| {
-        let (top, bottom) = (&block.top, &block.bottom);
-        east.add(block.horizontal(), (top, 1), (top, 0), &value);
-        north.add(block.vertical(), (top, 0), (bottom, 0), &value);
-        north_east.add(block.rising(), (top, 1), (bottom, 0), &value);
-        north_west.add(block.falling(), (top, 0), (bottom, 1), &value);
-    });
-    let mut result = Tilts { tilts: [0.0; 3], gradients: [[0.0; 2]; 3] };
-    for (channel, (tilt, gradient)) in result.tilts.iter_mut().zip(&mut result.gradients).enumerate() {
-        let (e, n) = (east.mean(channel, 1.0)?, north.mean(channel, 1.0)?);
-        let (ne, nw) = (north_east.mean(channel, FRAC_1_SQRT_2)?, north_west.mean(channel, FRAC_1_SQRT_2)?);
-        // Least squares of eq. 20 over the four unit directions, whose normal matrix is twice the identity.
-        let ix = 0.5 * (e + FRAC_1_SQRT_2 * (ne - nw));
-        let iy = 0.5 * (n + FRAC_1_SQRT_2 * (ne + nw));
-        if !has_direction(ix, iy) {
-            return None;
-        }
-        *tilt = atan2(iy, ix);
-        *gradient = [ix, iy];
-    }
-    Some(result)
+    let mut sums = Sums::default();
+    for_each_block(image, inliers, |block: &Block| sums.add_of(block, &value));
+    sums.tilts()
 }
 
 /// Steps between pixels may be no longer than this along either axis.

@@ -1,0 +1,338 @@
+//! A camera's rows instead of a picture: the pipeline of [`solve`](crate::solve) over one row at a time.
+//!
+//! A cold start takes two or three passes over a frame, or over consecutive frames of a scene at rest. The pass over its
+//! colors keeps a stratified sample, and ends with the model: everything that medians and fits are for is computed on the
+//! sample. The pass over its tilts sums the differences between neighbouring inliers, of this row and the one before it,
+//! and ends with F where there is one candidate for the slants. Where there are several, a pass over the slants sums the
+//! integral (15) of all of them at once, and ends with F. Then normals and inliers of any row can be had, and one pass
+//! over a later frame refines the model.
+//!
+//! Where the sample holds every usable pixel the result is that of [`solve`](crate::solve::solve), bit for bit (but the
+//! integral of a lone candidate, which is not computed: infinite).
+
+mod cold;
+mod output;
+mod strata;
+mod warm;
+
+pub use warm::{Change, Drift};
+
+use crate::constrained_slant::{MAX_CANDIDATES, ROOM};
+use crate::image::{Census, Image, MAX_PIXELS, Sample, Usable};
+use crate::integrability;
+use crate::lmeds::{self, FitError, MIN_PIXELS};
+use crate::mat3::Mat3;
+use crate::regression::Moments;
+use crate::solve::{self, Outcome, Road, SlantFallback, Solution};
+use crate::tilt::{TiltEstimator, pentland};
+use strata::Strata;
+
+/// What to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Params {
+    /// The pipeline's. `lmeds.sample_size` is how many colors the sample has room for, at least 24, here 2048 by default;
+    /// tilts are Pentland's or given, and without a root slants are refused or fitted by least squares.
+    pub solve: solve::Params,
+    /// Where less than this share of the usable pixels has a residual that the model accepts, in [0, 1], a frame does not
+    /// refine it: a cold start is needed. Default 0.5, what least median of squares rests on.
+    pub smallest_share: f64,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        let lmeds = lmeds::Params { sample_size: 2048, ..lmeds::Params::default() };
+        let solve = solve::Params { lmeds, road: Road::Paper, ..solve::Params::default() };
+        Self { solve, smallest_share: 0.5 }
+    }
+}
+
+impl Params {
+    /// Whether every parameter is in its range, and one that rows can serve.
+    #[must_use]
+    pub fn are_valid(&self) -> bool {
+        self.solve.are_valid()
+            && (0.0..=1.0).contains(&self.smallest_share)
+            // Merged strata leave half of the sample.
+            && self.solve.lmeds.sample_size as usize >= 2 * MIN_PIXELS
+            && self.solve.road == Road::Paper
+            && matches!(self.solve.tilts, TiltEstimator::Pentland | TiltEstimator::Given(_))
+            && matches!(self.solve.fallback, SlantFallback::Refuse | SlantFallback::LeastSquares)
+    }
+}
+
+/// What the rows of a frame are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pass {
+    /// The sample and the model.
+    Colors,
+    /// The tilts.
+    Tilts,
+    /// The choice among the candidate slants.
+    Slants,
+    /// F is there: the frame refines it.
+    Refine,
+}
+
+/// Why a call did nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StreamError {
+    /// A parameter is out of its range.
+    Params,
+    /// Width or height is zero, or there are more than [`MAX_PIXELS`].
+    Size,
+    /// A buffer is too short.
+    TooShort,
+    /// No frame was begun.
+    NoFrame,
+    /// There is no F yet.
+    NotSolved,
+    /// A row comes twice, or one before it is missing.
+    RowOrder,
+    /// All rows of the frame were there already.
+    TooManyRows,
+    /// The frame ends before its last row: it is forgotten, and its pass is still to come.
+    TooFewRows,
+    /// This is not one row of the frame's width and pixel type.
+    Row,
+    /// Nothing can be computed from the frame's colors; the next pass is over colors again.
+    Fit(FitError),
+}
+
+/// How many `f32` [`Memory::values`] needs.
+#[must_use]
+pub const fn values_len(width: usize, height: usize, sample_size: u32) -> usize {
+    let sample = room(width, height, sample_size).saturating_mul(5);
+    let row = width.saturating_mul(3);
+    let larger = if sample > row { sample } else { row };
+    if larger > ROOM { larger } else { ROOM }
+}
+
+/// How many bytes [`Memory::places`] needs.
+#[must_use]
+pub const fn places_len(width: usize, height: usize, sample_size: u32) -> usize {
+    room(width, height, sample_size)
+}
+
+/// How many colors the sample has room for.
+const fn room(width: usize, height: usize, sample_size: u32) -> usize {
+    let pixels = width.saturating_mul(height);
+    if pixels < sample_size as usize { pixels } else { sample_size as usize }
+}
+
+/// The caller's buffers, which belong to the stream from one call to the next. What they hold at first does not matter.
+#[derive(Debug)]
+pub struct Memory<'m> {
+    /// [`values_len`] numbers: the sample and its residuals, then the row before, then boxes of slants.
+    pub values: &'m mut [f32],
+    /// [`places_len`] bytes: where in the frame the sample is from.
+    pub places: &'m mut [u8],
+}
+
+/// What a stream remembers beside its buffers.
+#[derive(Clone, Debug)]
+pub struct State {
+    params: Params,
+    width: usize,
+    height: usize,
+    format: Sample,
+    pass: Pass,
+    /// The row that comes next; `None` between frames.
+    row: Option<usize>,
+    census: Census,
+    strata: Strata,
+    second_differences: (f64, u64),
+    differences: pentland::Sums,
+    inlier_count: usize,
+    candidates: [Option<Mat3>; MAX_CANDIDATES],
+    integrals: [integrability::Sum; MAX_CANDIDATES],
+    moments: Moments,
+    /// What colors are multiplied with before their moments are summed: a power of two.
+    scale: f64,
+    drift: Option<Drift>,
+    /// Whether the cold start that `solution` is from came to its end.
+    concluded: bool,
+    solution: Solution,
+}
+
+impl State {
+    /// For frames of this size, whose samples are stored as `format`.
+    ///
+    /// # Errors
+    /// [`StreamError::Params`], [`StreamError::Size`].
+    pub fn new(width: usize, height: usize, format: Sample, params: Params) -> Result<Self, StreamError> {
+        Self::check_size(width, height, &params)?;
+        Ok(Self::unchecked(width, height, format, params))
+    }
+
+    /// Whether there can be a stream of frames of this size.
+    ///
+    /// # Errors
+    /// [`StreamError::Params`], [`StreamError::Size`].
+    pub fn check_size(width: usize, height: usize, params: &Params) -> Result<(), StreamError> {
+        if !params.are_valid() {
+            return Err(StreamError::Params);
+        }
+        let holds = width.checked_mul(height).is_some_and(|pixels| (1..=MAX_PIXELS).contains(&pixels));
+        if holds { Ok(()) } else { Err(StreamError::Size) }
+    }
+
+    /// As [`Self::new`] for what [`Self::check_size`] has seen: made where it is put, without a copy on the stack.
+    #[must_use]
+    #[inline(always)]
+    pub fn unchecked(width: usize, height: usize, format: Sample, params: Params) -> Self {
+        let usable = Usable { saturation: params.solve.saturation.unwrap_or(format.saturation()) };
+        let lmeds = params.solve.lmeds;
+        Self {
+            params,
+            width,
+            height,
+            format,
+            pass: Pass::Colors,
+            row: None,
+            census: Census::default(),
+            strata: Strata::new(lmeds.seed, room(width, height, lmeds.sample_size)),
+            second_differences: (0.0, 0),
+            differences: pentland::Sums::default(),
+            inlier_count: 0,
+            candidates: [None; MAX_CANDIDATES],
+            integrals: [integrability::Sum::default(); MAX_CANDIDATES],
+            moments: Moments::default(),
+            scale: 1.0,
+            drift: None,
+            concluded: false,
+            solution: Solution::unsolved(Census::default(), usable),
+        }
+    }
+
+    /// What the next frame is for, or the present one.
+    #[must_use]
+    pub const fn pass(&self) -> Pass {
+        self.pass
+    }
+
+    /// Whether the last cold start came to its end; [`Self::solution`] then says how far, and otherwise is still growing.
+    #[must_use]
+    pub const fn is_concluded(&self) -> bool {
+        self.concluded
+    }
+
+    /// How far the last cold start came, and what it found on the way.
+    #[must_use]
+    pub const fn solution(&self) -> &Solution {
+        &self.solution
+    }
+
+    fn usable(&self) -> Usable {
+        self.solution.inliers.usable
+    }
+}
+
+/// A stream: its state over its buffers.
+#[derive(Debug)]
+pub struct Stream<'m> {
+    state: &'m mut State,
+    memory: Memory<'m>,
+}
+
+impl<'m> Stream<'m> {
+    /// # Errors
+    /// [`StreamError::TooShort`].
+    pub fn new(state: &'m mut State, memory: Memory<'m>) -> Result<Self, StreamError> {
+        let (width, height, sample_size) = (state.width, state.height, state.params.solve.lmeds.sample_size);
+        let Memory { values, places } = memory;
+        let values = values.get_mut(..values_len(width, height, sample_size)).ok_or(StreamError::TooShort)?;
+        let places = places.get_mut(..places_len(width, height, sample_size)).ok_or(StreamError::TooShort)?;
+        Ok(Self { state, memory: Memory { values, places } })
+    }
+
+    /// The state.
+    #[must_use]
+    pub const fn state(&self) -> &State {
+        self.state
+    }
+
+    /// Forgets the model: the next frame is for colors.
+    pub fn restart(&mut self) {
+        self.state.row = None;
+        self.state.pass = Pass::Colors;
+    }
+
+    /// Begins a frame, and says what for. One that was not ended is forgotten.
+    pub fn begin(&mut self) -> Pass {
+        let state = &mut *self.state;
+        match state.pass {
+            Pass::Colors => state.begin_colors(),
+            Pass::Tilts => state.begin_tilts(),
+            Pass::Slants => state.begin_slants(),
+            Pass::Refine => state.begin_refine(),
+        }
+        state.row = Some(0);
+        state.pass
+    }
+
+    /// Takes row `y` of the frame, a picture of height 1 that may have a mask.
+    ///
+    /// # Errors
+    /// [`StreamError::NoFrame`], [`StreamError::TooManyRows`], [`StreamError::RowOrder`], [`StreamError::Row`]: the frame
+    /// goes on as if the call had not been.
+    pub fn row(&mut self, y: usize, row: &Image) -> Result<(), StreamError> {
+        let state = &mut *self.state;
+        let next = state.row.ok_or(StreamError::NoFrame)?;
+        if next >= state.height {
+            return Err(StreamError::TooManyRows);
+        }
+        if y != next {
+            return Err(StreamError::RowOrder);
+        }
+        state.check(row)?;
+        match state.pass {
+            Pass::Colors => state.row_colors(y, row, &mut self.memory),
+            Pass::Tilts => state.row_tilts(y, row, &mut self.memory),
+            Pass::Slants => state.row_slants(y, row, &mut self.memory),
+            Pass::Refine => state.row_refine(y, row, &mut self.memory),
+        }
+        state.row = Some(y + 1);
+        Ok(())
+    }
+
+    /// Ends a frame, and says which pass comes next. That is [`Pass::Colors`] where a cold start came to no F, and
+    /// [`State::solution`] says why, and where too few pixels fit the model for it to be refined, as [`State::drift`] says.
+    /// The old model serves on in this case, until it is replaced.
+    ///
+    /// # Errors
+    /// [`StreamError::NoFrame`], [`StreamError::TooFewRows`], [`StreamError::Fit`].
+    pub fn end(&mut self) -> Result<Pass, StreamError> {
+        let state = &mut *self.state;
+        let rows = state.row.take().ok_or(StreamError::NoFrame)?;
+        if rows < state.height {
+            return Err(StreamError::TooFewRows);
+        }
+        match state.pass {
+            Pass::Colors => state.end_colors(&mut self.memory)?,
+            Pass::Tilts => state.end_tilts(&mut self.memory),
+            Pass::Slants => state.end_slants(),
+            Pass::Refine => state.end_refine(&mut self.memory),
+        }
+        Ok(state.pass)
+    }
+}
+
+impl State {
+    /// Whether this is a row of the frame.
+    fn check(&self, row: &Image) -> Result<(), StreamError> {
+        let fits = row.width() == self.width && row.height() == 1 && row.sample() == self.format;
+        if fits { Ok(()) } else { Err(StreamError::Row) }
+    }
+
+    /// The pass that follows from how far the solution has come, `next` where it goes on.
+    fn go_on(&mut self, goes_on: bool, next: Pass) {
+        self.concluded = !goes_on;
+        self.pass = if goes_on {
+            next
+        } else if self.solution.outcome == Outcome::Solved {
+            Pass::Refine
+        } else {
+            Pass::Colors
+        };
+    }
+}

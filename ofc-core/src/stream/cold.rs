@@ -1,0 +1,282 @@
+//! The three passes of a cold start.
+
+use super::strata::{Sampled, Slots, Strata};
+use super::{Memory, Pass, State, StreamError, room};
+use crate::cells::{Block, for_each_block_of_rows};
+use crate::constrained_slant::{self, Candidates, SlantRoot};
+use crate::ellipsoid::Coefficients;
+use crate::image::{Census, Image, WINDOW, Window, for_each_bit};
+use crate::inliers::Inliers;
+use crate::integrability;
+use crate::lmeds::{self, Method};
+use crate::pixels::second_differences;
+use crate::rng::Rng;
+use crate::solve::{Choice, Outcome, SlantFallback, SlantSource, Solution, orient};
+use crate::tilt::{TiltEstimator, Tilts, pentland};
+
+impl State {
+    pub(super) fn begin_colors(&mut self) {
+        let lmeds = self.params.solve.lmeds;
+        self.strata = Strata::new(lmeds.seed, room(self.width, self.height, lmeds.sample_size));
+        self.census = Census::default();
+        self.second_differences = (0.0, 0);
+    }
+
+    #[inline(never)]
+    pub(super) fn row_colors(&mut self, y: usize, row: &Image, memory: &mut Memory) {
+        let Some((mut slots, _)) = self.slots(memory) else { return };
+        let usable = self.usable();
+        row.for_each_window(|window| {
+            let bits = usable.count_window(window, &mut self.census);
+            let (sum, count) = &mut self.second_differences;
+            second_differences(window, bits, sum, count);
+            for_each_bit(bits, |i| self.strata.offer(window, y, i, &mut slots));
+        });
+    }
+
+    /// The sample's room, and that behind it.
+    fn slots<'a>(&self, memory: &'a mut Memory) -> Option<(Slots<'a>, &'a mut [f32])> {
+        let room = room(self.width, self.height, self.params.solve.lmeds.sample_size);
+        let (red, rest) = memory.values.split_at_mut_checked(room)?;
+        let (green, rest) = rest.split_at_mut_checked(room)?;
+        let (blue, rest) = rest.split_at_mut_checked(room)?;
+        Some((Slots { colors: [red, green, blue], places: memory.places }, rest))
+    }
+
+    #[inline(never)]
+    pub(super) fn end_colors(&mut self, memory: &mut Memory) -> Result<(), StreamError> {
+        self.solution = Solution::unsolved(self.census, self.usable());
+        self.concluded = false;
+        lmeds::enough(&self.census, self.width * self.height).map_err(StreamError::Fit)?;
+        self.scale = lmeds::reciprocal_power_of_two(self.census.largest);
+        self.drift = None;
+        let found = self.search(memory);
+        let params = self.params.solve;
+        let (pixels, workspace) = self.sampled(memory).ok_or(StreamError::TooShort)?;
+        let usable = self.usable();
+        let scaled = match params.lmeds.method {
+            Method::LeastMedian => found,
+            Method::LeastSquares => lmeds::least_squares(&pixels, usable, self.scale),
+        };
+        let count = self.strata.len();
+        let fit = lmeds::judge(&pixels, usable, count, self.scale, scaled, &params.lmeds, workspace);
+        let fit = fit.map(|fit| self.solution.fit = Some(fit));
+        self.solution.model(&pixels, fit, &params, workspace).map_err(StreamError::Fit)?;
+        self.go_on(self.solution.outcome == Outcome::NoTilt, Pass::Tilts);
+        Ok(())
+    }
+
+    /// The sample as pixels, and the room behind it.
+    fn sampled<'a>(&self, memory: &'a mut Memory) -> Option<(Sampled<'a>, &'a mut [f32])> {
+        let (Slots { colors: [red, green, blue], places }, workspace) = self.slots(memory)?;
+        let count = self.strata.len();
+        let pixels = Sampled {
+            colors: [red.get(..count)?, green.get(..count)?, blue.get(..count)?],
+            places: if self.strata.is_whole() { places.get(..count)? } else { &[] },
+            format: self.format,
+            second_differences: self.second_differences,
+        };
+        Some((pixels, workspace))
+    }
+
+    /// The scaled z that least median of squares finds on the sample.
+    #[inline(never)]
+    fn search(&self, memory: &mut Memory) -> Option<Coefficients> {
+        let lmeds = self.params.solve.lmeds;
+        if lmeds.method != Method::LeastMedian {
+            return None;
+        }
+        let count = self.strata.len();
+        let (Slots { colors, .. }, residuals) = self.slots(memory)?;
+        let residuals = residuals.get_mut(..count)?;
+        let mut colors = colors.map(|channel| channel.get_mut(..count).unwrap_or_default());
+        // Where it was before its colors were drawn.
+        let mut rng = Rng::new(lmeds.seed);
+        rng.skip(count as u64);
+        multiply(&mut colors, self.scale);
+        let scaled = colors.each_ref().map(|channel| &**channel);
+        let found = lmeds::search(scaled, residuals, lmeds.subset_count()?, &mut rng);
+        multiply(&mut colors, 1.0 / self.scale);
+        found
+    }
+
+    pub(super) fn begin_tilts(&mut self) {
+        self.differences = pentland::Sums::default();
+        self.inlier_count = 0;
+    }
+
+    #[inline(never)]
+    pub(super) fn row_tilts(&mut self, y: usize, row: &Image, memory: &mut Memory) {
+        if y > 0 {
+            self.tilts_of_blocks(Some(row), memory);
+        }
+        keep(row, memory);
+    }
+
+    /// The blocks of the row before and this one.
+    #[inline(never)]
+    fn tilts_of_blocks(&mut self, row: Option<&Image>, memory: &Memory) {
+        let (differences, count) = (&mut self.differences, &mut self.inlier_count);
+        for_each_block_of_stream(self.width, &self.solution.inliers, row, memory, |block| {
+            differences.add(block);
+            *count += block.own_top().count_ones() as usize;
+        });
+    }
+
+    /// The pairs along the last row, which has none below.
+    pub(super) fn last_row_tilts(&mut self, memory: &Memory) {
+        self.tilts_of_blocks(None, memory);
+    }
+
+    #[inline(never)]
+    pub(super) fn end_tilts(&mut self, memory: &mut Memory) {
+        self.last_row_tilts(memory);
+        self.solution.inlier_count = self.inlier_count;
+        self.solution.tilts = self.tilts();
+        let goes_on = self.find_candidates(memory);
+        self.go_on(goes_on, Pass::Slants);
+    }
+
+    /// The tilts that the differences, or the caller, have.
+    pub(super) fn tilts(&self) -> Option<Tilts> {
+        match self.params.solve.tilts {
+            TiltEstimator::Given(tilts) => Some(Tilts::alone(tilts)),
+            _ => self.differences.tilts(),
+        }
+    }
+
+    /// The candidates, and F where there is one at most; whether there are more.
+    #[inline(never)]
+    fn find_candidates(&mut self, memory: &mut Memory) -> bool {
+        let (Some(Tilts { tilts, .. }), Some(ellipsoid)) = (self.solution.tilts, &self.solution.ellipsoid)
+        else {
+            return false;
+        };
+        let mut roots = Candidates::new();
+        constrained_slant::roots_within(tilts, ellipsoid.cosines, memory.values, &mut roots);
+        let params = &self.params.solve;
+        let Some((slants, source)) = slants_of(roots.first(), tilts, ellipsoid.cosines, params.fallback)
+        else {
+            self.solution.conclude();
+            return false;
+        };
+        let several = roots.len() > 1;
+        if several {
+            for (inverse, root) in self.candidates.iter_mut().zip(&roots) {
+                let orientation = orient(ellipsoid, root.slants, tilts, params);
+                *inverse = (orientation.rank == 3).then_some(orientation.f_inverse);
+            }
+        }
+        let choice = self.solution.choice.insert(Choice::among(&roots));
+        (choice.slants, choice.source) = (slants, source);
+        if !several {
+            choice.orientation = orient(ellipsoid, slants, tilts, params);
+            self.solution.conclude();
+        }
+        several
+    }
+
+    pub(super) fn begin_slants(&mut self) {
+        self.integrals.fill(integrability::Sum::default());
+    }
+
+    #[inline(never)]
+    pub(super) fn row_slants(&mut self, y: usize, row: &Image, memory: &mut Memory) {
+        if y > 0 {
+            let (candidates, integrals) = (&self.candidates, &mut self.integrals);
+            for_each_block_of_stream(self.width, &self.solution.inliers, Some(row), memory, |block| {
+                for (integral, inverse) in integrals.iter_mut().zip(candidates) {
+                    if let Some(inverse) = inverse {
+                        integral.add(block, inverse);
+                    }
+                }
+            });
+        }
+        keep(row, memory);
+    }
+
+    #[inline(never)]
+    pub(super) fn end_slants(&mut self) {
+        if let (Some(choice), Some(Tilts { tilts, .. }), Some(ellipsoid)) =
+            (&mut self.solution.choice, self.solution.tilts, &self.solution.ellipsoid)
+        {
+            let sums = self.candidates.iter().zip(&self.integrals);
+            for (candidate, (inverse, integral)) in choice.candidates.iter_mut().zip(sums) {
+                let mean = inverse.and_then(|_| integral.mean());
+                candidate.integral = mean.map_or(f64::INFINITY, |integral| integral.mean);
+            }
+            if let Some((chosen, slants)) = choice.most_integrable() {
+                (choice.chosen, choice.slants) = (chosen, slants);
+            }
+            choice.orientation = orient(ellipsoid, choice.slants, tilts, &self.params.solve);
+        }
+        self.solution.conclude();
+        self.go_on(false, Pass::Colors);
+    }
+}
+
+/// The slants of this root, or without one those of the fallback; `None` where that is to refuse.
+pub(super) fn slants_of(
+    root: Option<&SlantRoot>,
+    tilts: [f64; 3],
+    cosines: [f64; 3],
+    fallback: SlantFallback,
+) -> Option<([f64; 3], SlantSource)> {
+    match root {
+        Some(root) => Some((root.slants, SlantSource::Root)),
+        None if fallback == SlantFallback::LeastSquares => {
+            let slants = constrained_slant::without_roots(tilts, cosines).slants;
+            Some((slants, SlantSource::LeastSquares))
+        }
+        None => None,
+    }
+}
+
+/// A power of two times all colors, so that nothing is lost.
+fn multiply(colors: &mut [&mut [f32]; 3], factor: f64) {
+    for value in colors.iter_mut().flat_map(|channel| channel.iter_mut()) {
+        *value = (f64::from(*value) * factor) as f32;
+    }
+}
+
+/// Keeps a row for the blocks that it makes with the next one: channels apart, NaN where the mask leaves a pixel out.
+#[inline(never)]
+fn keep(row: &Image, memory: &mut Memory) {
+    let width = row.width();
+    row.for_each_window(|window| {
+        for (channel, color) in memory.values.chunks_exact_mut(width).zip(&window.color) {
+            let out = channel.get_mut(window.x..).unwrap_or_default();
+            for (i, (out, &value)) in out.iter_mut().zip(color).take(window.len).enumerate() {
+                *out = if window.masked >> i & 1 == 1 { value } else { f32::NAN };
+            }
+        }
+    });
+}
+
+/// The pixels that are kept of the row before, from column `x` on.
+fn kept(x: usize, width: usize, memory: &Memory, window: &mut Window) {
+    window.x = x;
+    window.len = width.saturating_sub(x).min(WINDOW);
+    window.masked = if window.len == WINDOW { u64::MAX } else { (1 << window.len) - 1 };
+    for (channel, out) in memory.values.chunks_exact(width).zip(&mut window.color) {
+        for (out, &value) in out.iter_mut().zip(channel.get(x..).unwrap_or_default()) {
+            *out = value;
+        }
+    }
+}
+
+/// Visits the blocks of the row before and this one, or nothing below the last row.
+fn for_each_block_of_stream(
+    width: usize,
+    inliers: &Inliers,
+    row: Option<&Image>,
+    memory: &Memory,
+    visit: impl FnMut(&Block),
+) {
+    let read = |x, window: &mut Window, lower| match (lower, row) {
+        (0, _) => kept(x, width, memory, window),
+        (_, Some(row)) => row.read(x, 0, window),
+        (_, None) => (window.len, window.masked) = (0, 0),
+    };
+    for_each_block_of_rows(width, &mut Block::default(), read, |window| inliers.bits(window), visit);
+}

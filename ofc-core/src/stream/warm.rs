@@ -1,0 +1,175 @@
+//! One pass that makes a new model of an old one.
+//!
+//! The inliers of the old model are fitted by least squares, from the sums over them; so are the tilts. Of the slants
+//! that agree with both those nearest to the old ones are taken. The dispersion grows or shrinks with the deviation of
+//! the inliers' residuals: as it was truncated before, so it is now.
+
+use super::cold::slants_of;
+use super::{Memory, Pass, State};
+use crate::constrained_slant::{self, Candidates, SlantRoot};
+use crate::ellipsoid::{self, Coefficients};
+use crate::image::{Census, Image, for_each_bit};
+use crate::inliers::{Band, Inliers};
+use crate::lmeds::{MIN_PIXELS, Refit};
+use crate::mat3::{self, Mat3};
+use crate::regression::Moments;
+use crate::solve::{Choice, SMALLEST_NOISE_MARGIN, orient};
+use crate::tilt::pentland;
+use libm::{atan2, sqrt};
+
+/// What a frame says of the model from before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drift {
+    /// The share of usable pixels that the old model's residuals accept.
+    pub inlier_share: f64,
+    /// What changed; `None` where there is no new model, and the next pass is over colors.
+    pub change: Option<Change>,
+}
+
+/// From one model to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// The angles between the old and the new rows of F, in radians.
+    pub angles: [f64; 3],
+    /// The lengths of the new rows of F over those of the old.
+    pub strengths: [f64; 3],
+    /// The dispersion of the new residuals over that of the old.
+    pub dispersion: f64,
+}
+
+impl State {
+    /// What the last frame that a model was refined with says of it; `None` before the first and after a cold start.
+    #[must_use]
+    pub const fn drift(&self) -> Option<&Drift> {
+        self.drift.as_ref()
+    }
+
+    pub(super) fn begin_refine(&mut self) {
+        self.census = Census::default();
+        self.moments = Moments::default();
+        self.differences = pentland::Sums::default();
+        self.inlier_count = 0;
+    }
+
+    #[inline(never)]
+    pub(super) fn row_refine(&mut self, y: usize, row: &Image, memory: &mut Memory) {
+        self.row_moments(row);
+        self.row_tilts(y, row, memory);
+    }
+
+    #[inline(never)]
+    fn row_moments(&mut self, row: &Image) {
+        let inliers = Inliers { norm: Band::EVERYTHING, ..self.solution.inliers };
+        row.for_each_window(|window| {
+            inliers.usable.count_window(window, &mut self.census);
+            let mut sums = Moments::default();
+            for_each_bit(inliers.bits(window), |i| {
+                sums.add(window.pixel(i).map(|c| f64::from(c) * self.scale));
+            });
+            self.moments.merge(&sums);
+        });
+    }
+
+    #[inline(never)]
+    pub(super) fn end_refine(&mut self, memory: &mut Memory) {
+        self.last_row_tilts(memory);
+        let inlier_share = f64::from(self.moments.count) / self.census.usable.max(1) as f64;
+        let enough = self.census.usable >= MIN_PIXELS && inlier_share >= self.params.smallest_share;
+        let change = if enough { self.refine(memory.values) } else { None };
+        self.drift = Some(Drift { inlier_share, change });
+        self.pass = if change.is_some() { Pass::Refine } else { Pass::Colors };
+    }
+
+    /// The new model; `None`, with the old one kept, where there is none.
+    #[inline(never)]
+    fn refine(&mut self, room: &mut [f32]) -> Option<Change> {
+        let form = self.refined_form()?;
+        let ellipsoid = ellipsoid::decompose(&form).ok()?;
+        let tilts = self.tilts()?;
+        let mut roots = Candidates::new();
+        constrained_slant::roots_within(tilts.tilts, ellipsoid.cosines, room, &mut roots);
+        let params = &self.params.solve;
+        let chosen = nearest(&roots, self.solution.choice.as_ref()?.slants);
+        let root = roots.get(chosen);
+        let (slants, source) = slants_of(root, tilts.tilts, ellipsoid.cosines, params.fallback)?;
+        let orientation = orient(&ellipsoid, slants, tilts.tilts, params);
+        if orientation.rank < 3 {
+            return None;
+        }
+        let old = self.orientation()?.f;
+        let dispersion = self.adopt_fit()?;
+        let choice = self.solution.choice.insert(Choice::among(&roots));
+        (choice.slants, choice.source, choice.chosen) = (slants, source, chosen);
+        choice.orientation = orientation;
+        self.solution.ellipsoid = Some(ellipsoid);
+        self.solution.tilts = Some(tilts);
+        Some(change(&old, &orientation.f, dispersion))
+    }
+
+    fn refit(&self) -> Option<Refit> {
+        let confidence = self.params.solve.lmeds.limits_confidence;
+        Refit::new(&self.moments, self.scale, confidence, |_, z| self.moments.residual_sum(z))
+    }
+
+    /// C of the sums; `None` where they do not determine it.
+    #[inline(never)]
+    fn refined_form(&self) -> Option<Coefficients> {
+        let refit = self.refit()?;
+        (refit.degenerate_noise_deviation > SMALLEST_NOISE_MARGIN * refit.noise_deviation).then(|| refit.z())
+    }
+
+    /// Takes the fit of the sums over, with the bands that follow from it, and says by how much the dispersion grew.
+    #[inline(never)]
+    fn adopt_fit(&mut self) -> Option<f64> {
+        let refit = self.refit()?;
+        let rejection = self.params.solve.lmeds.rejection;
+        let fit = self.solution.fit.as_mut()?;
+        let z = refit.z();
+        // An exact fit stays one.
+        let dispersion = if fit.residual_deviation > 0.0 {
+            refit.residual_deviation / fit.residual_deviation
+        } else {
+            1.0
+        };
+        fit.robust = z;
+        fit.median_residual *= dispersion;
+        fit.dispersion *= dispersion;
+        fit.r_squared = 1.0 - fit.median_residual * fit.median_residual;
+        fit.band = Band::residual(z, fit.dispersion, rejection);
+        fit.coefficients = refit.coefficients;
+        fit.residual_deviation = refit.residual_deviation;
+        fit.color_deviations = refit.color_deviations;
+        fit.noise_deviation = refit.noise_deviation;
+        fit.degenerate_noise_deviation = refit.degenerate_noise_deviation;
+        fit.usable = self.census.usable;
+        fit.inliers = refit.count as usize;
+        self.solution.inliers.residual = fit.band;
+        if let Some(norms) = &mut self.solution.norm_location {
+            norms.median_distance *= dispersion;
+            norms.dispersion *= dispersion;
+            self.solution.inliers.norm = Band::norm(z, norms, rejection);
+        }
+        self.solution.census = self.census;
+        self.solution.color_deviations = refit.color_deviations;
+        self.solution.inlier_count = self.inlier_count;
+        Some(dispersion)
+    }
+}
+
+/// Which root's slants are nearest to these; 0 without any.
+fn nearest(roots: &Candidates, slants: [f64; 3]) -> usize {
+    let distance =
+        |root: &SlantRoot| root.slants.iter().zip(slants).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+    let roots = roots.iter().enumerate();
+    roots.min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b))).map_or(0, |(chosen, _)| chosen)
+}
+
+fn change(old: &Mat3, new: &Mat3, dispersion: f64) -> Change {
+    let (mut angles, mut strengths) = ([0.0; 3], [0.0; 3]);
+    for ((angle, strength), (&old, &new)) in angles.iter_mut().zip(&mut strengths).zip(old.iter().zip(new)) {
+        let cross = mat3::cross(old, new);
+        *angle = atan2(sqrt(mat3::dot(cross, cross)), mat3::dot(old, new));
+        *strength = sqrt(mat3::dot(new, new) / mat3::dot(old, old).max(f64::MIN_POSITIVE));
+    }
+    Change { angles, strengths, dispersion }
+}

@@ -1,0 +1,486 @@
+//! Rows of a camera instead of a picture: one memory of a published size, in the caller's hands.
+
+use crate::image::{CheckedImage, dimension, image, ofc_image, ofc_pixel_format, sample_type};
+use crate::pointers::{
+    Extent, OFC_WORKSPACE_ALIGNMENT, Out, Plain, disjoint, extent, input, input_array, output_slice,
+    workspace,
+};
+use crate::regression::pixel_count;
+use crate::solve::{OFC_ROAD_PAPER, ofc_solution, ofc_solve_params};
+use crate::status::{
+    OFC_STATUS_COLD_START_NEEDED, OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_STREAM,
+    OFC_STATUS_NOT_SOLVED, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO, OFC_STATUS_TOO_LARGE, of, of_outcome,
+    of_stream_error, ofc_status,
+};
+use core::ffi::c_void;
+use ofc_core::image::Image;
+use ofc_core::stream::{self, Change, Drift, Memory, Params, Pass, State, Stream, StreamError};
+
+/// What the rows of a stream's frame are for: one of OFC_PASS_*.
+pub type ofc_stream_pass = i32;
+/// A cold start: a sample of the colors, and the model. A model of before serves until this pass ends.
+pub const OFC_PASS_COLORS: i32 = 1;
+/// A cold start: the tilts; with one candidate for the slants also F.
+pub const OFC_PASS_TILTS: i32 = 2;
+/// A cold start: the choice among the candidates for the slants, and F.
+pub const OFC_PASS_SLANTS: i32 = 3;
+/// F is there, and the frame refines it.
+pub const OFC_PASS_REFINE: i32 = 4;
+
+/// What a stream does. Set by ofc_stream_params_default().
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ofc_stream_params {
+    /// As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
+    /// road is OFC_ROAD_PAPER, tilt_estimator OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
+    /// OFC_FALLBACK_LEAST_SQUARES.
+    pub solve: ofc_solve_params,
+    /// Where less than this share of the usable pixels fits the model, a frame does not refine it and
+    /// OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
+    pub smallest_share: f64,
+    /// Must be zero.
+    pub reserved: [u32; 4],
+}
+
+/// What the last OFC_PASS_REFINE frame said of the model from before it.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ofc_stream_drift {
+    /// Share of the usable pixels whose residual the old model accepts.
+    pub inlier_share: f64,
+    /// Angles between the old and the new rows of F; zero where there is no new model.
+    pub angle_rad: [f64; 3],
+    /// Lengths of the new rows of F over those of the old; zero where there is no new model.
+    pub strength_ratio: [f64; 3],
+    /// Dispersion of the new residuals over that of the old; zero where there is no new model.
+    pub dispersion_ratio: f64,
+    /// 1 when there is a new model, 0 when a cold start is needed.
+    pub refined: i32,
+    /// Zero.
+    pub reserved: u32,
+}
+
+// SAFETY: integers and floats.
+unsafe impl Plain for ofc_stream_params {}
+// SAFETY: as above.
+unsafe impl Plain for ofc_stream_drift {}
+// SAFETY: every bit pattern is a value.
+unsafe impl Plain for u64 {}
+// SAFETY: as above.
+unsafe impl Plain for *mut ofc_stream {}
+
+/// A stream in memory of the caller's: see ofc_stream_init(). It may be copied to another place of the same alignment.
+pub struct ofc_stream {
+    _opaque: (),
+}
+
+/// What such memory begins with.
+#[repr(C)]
+struct Head {
+    words: [u64; 4],
+    state: State,
+}
+
+/// Bytes of a stream before its buffers, on every target.
+const STATE_BYTES: usize = 4096;
+const _: () = assert!(size_of::<Head>() <= STATE_BYTES && align_of::<Head>() <= OFC_WORKSPACE_ALIGNMENT);
+
+/// The first word of a stream.
+const MAGIC: u64 = 0x6d61_6572_7473_666f;
+
+/// The words of a stream for so many pixels in a row, rows and sampled colors; the last one checks the others.
+fn words(size: u64, sample_size: u64) -> [u64; 4] {
+    const ODD: u64 = 0x9e37_79b9_7f4a_7c15;
+    [
+        MAGIC,
+        size,
+        sample_size,
+        (MAGIC ^ size).wrapping_mul(ODD).rotate_left(32) ^ sample_size.wrapping_mul(ODD),
+    ]
+}
+
+/// How many floats and bytes lie behind the state, and how many bytes all of it takes; 0 when that is too much.
+fn sizes(width: usize, height: usize, sample_size: u32) -> (usize, usize, usize) {
+    let values = stream::values_len(width, height, sample_size);
+    let places = stream::places_len(width, height, sample_size);
+    let bytes = values.checked_mul(4).and_then(|bytes| bytes.checked_add(places + STATE_BYTES + 7));
+    (values, places, bytes.map_or(0, |bytes| bytes / 8 * 8))
+}
+
+impl ofc_stream_params {
+    fn check(self) -> Result<Params, ofc_status> {
+        let Self { solve, smallest_share, reserved } = self;
+        if reserved != [0; 4] {
+            return Err(OFC_STATUS_RESERVED_NOT_ZERO);
+        }
+        let params = Params { solve: solve.check()?, smallest_share };
+        if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
+    }
+}
+
+const fn of_pass(pass: Pass) -> ofc_stream_pass {
+    match pass {
+        Pass::Colors => OFC_PASS_COLORS,
+        Pass::Tilts => OFC_PASS_TILTS,
+        Pass::Slants => OFC_PASS_SLANTS,
+        Pass::Refine => OFC_PASS_REFINE,
+    }
+}
+
+/// The stream at this address, and its bytes.
+///
+/// # Safety
+/// What [`ofc_stream_init`] wrote there is still there, and nobody else uses it during the call.
+unsafe fn opened<'a>(pointer: *mut ofc_stream) -> Result<(Stream<'a>, Extent), ofc_status> {
+    let head = pointer.cast::<Head>();
+    extent(head.cast_const(), 1)?;
+    let ([magic, size, sample_size, check], _) = input_array::<u64, 4>(head.cast())?;
+    if [magic, size, sample_size, check] != words(size, sample_size) {
+        return Err(OFC_STATUS_NO_STREAM);
+    }
+    let (width, height) = ((size >> 32) as usize, size as u32 as usize);
+    let (values, places, bytes) = sizes(width, height, sample_size as u32);
+    let whole = extent(pointer.cast::<u8>().cast_const(), bytes)?;
+    // SAFETY: its words say that `init` was here, which has seen that there are so many bytes; state and buffers lie apart.
+    let (state, memory) = unsafe {
+        let buffers = head.cast::<f32>().add(STATE_BYTES / size_of::<f32>());
+        let places = output_slice(buffers.add(values).cast::<u8>(), places);
+        let values = output_slice(buffers, values);
+        (&mut (*head).state, Memory { values, places })
+    };
+    Ok((Stream::new(state, memory).map_err(of_stream_error)?, whole))
+}
+
+/// Sets every field to its default.
+///
+/// @param params  Output.
+/// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_params) -> ofc_status {
+    of(Out::new(params).map(|out| {
+        let Params { solve, smallest_share } = Params::default();
+        let mut defaults = ofc_solve_params::defaults();
+        defaults.lmeds.sample_size = solve.lmeds.sample_size;
+        defaults.road = OFC_ROAD_PAPER;
+        out.write(ofc_stream_params { solve: defaults, smallest_share, reserved: [0; 4] });
+        OFC_STATUS_OK
+    }))
+}
+
+/// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 12 for each pixel of
+/// a row or 5184 are more than 20 for each color. OFC_STREAM_SIZE(width, height) is the same number for the default parameters, for static
+/// buffers: 47,104 bytes at 320 x 240.
+///
+/// @return The size, or 0 when an argument is invalid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const ofc_stream_params) -> usize {
+    let Ok(params) = input(params).and_then(|(params, _)| params.check()) else { return 0 };
+    if pixel_count(width, height) == 0 {
+        return 0;
+    }
+    sizes(dimension(width), dimension(height), params.solve.lmeds.sample_size).2
+}
+
+/// Makes a stream for frames that come row by row. A frame is begun, given its rows from the top down, and ended; which
+/// pass it is for follows from the ones before it:
+///
+///     ofc_stream_begin(stream, &pass);
+///     for (int32_t y = 0; y < height; y++) {
+///         row.pixels = next_row();
+///         ofc_stream_row(stream, y, &row);
+///         if (pass == OFC_PASS_REFINE)
+///             ofc_stream_normals_row(stream, &row, normals);
+///     }
+///     ofc_status status = ofc_stream_end(stream, &pass);
+///
+/// A cold start takes the passes over colors and tilts, and where eqs. 25 have several roots that over slants, all of one
+/// frame or of consecutive frames of a scene at rest. Then there is F; every further frame refines it. Medians and fits of
+/// a cold start are those of a stratified sample of the colors. Where the sample holds all usable pixels, the solution is
+/// that of ofc_solve() to the bit, but for the integral of a lone candidate, which is not computed: infinite.
+///
+/// @param width, height  Of the frames.
+/// @param format     How samples are stored; their order and planes are each row's own.
+/// @param params     See the struct.
+/// @param memory     ofc_stream_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter. It is the stream's
+///                   until the caller is done with it: there is nothing to free.
+/// @param memory_bytes  Its size.
+/// @param stream     Output: the stream, at the address of its memory.
+/// @return OFC_STATUS_OK; OFC_STATUS_WORKSPACE_TOO_SMALL; the status of an invalid argument.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_init(
+    width: i32,
+    height: i32,
+    format: ofc_pixel_format,
+    params: *const ofc_stream_params,
+    memory: *mut c_void,
+    memory_bytes: usize,
+    stream: *mut *mut ofc_stream,
+) -> ofc_status {
+    let body = || {
+        let (params, params_extent) = input(params)?;
+        let params = params.check()?;
+        let sample = sample_type(format)?;
+        if width < 1 || height < 1 {
+            return Err(OFC_STATUS_EMPTY);
+        }
+        if pixel_count(width, height) == 0 {
+            return Err(OFC_STATUS_TOO_LARGE);
+        }
+        let (width, height) = (dimension(width), dimension(height));
+        let sample_size = params.solve.lmeds.sample_size;
+        let (_, _, need) = sizes(width, height, sample_size);
+        let memory_extent = workspace(memory.cast(), memory_bytes, need)?;
+        let out = Out::new(stream)?;
+        disjoint(&[memory_extent, out.extent], &[params_extent])?;
+        State::check_size(width, height, &params).map_err(of_stream_error)?;
+        let words = words((width as u64) << 32 | height as u64, u64::from(sample_size));
+        // SAFETY: aligned, long enough, and apart from everything else.
+        unsafe {
+            memory
+                .cast::<Head>()
+                .write(Head { words, state: State::unchecked(width, height, sample, params) })
+        };
+        out.write(memory.cast());
+        Ok(OFC_STATUS_OK)
+    };
+    of(body())
+}
+
+/// Forgets the model and any frame under way: the next frame is for colors.
+///
+/// @param stream  The stream.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM; the status of an invalid argument.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_restart(stream: *mut ofc_stream) -> ofc_status {
+    // SAFETY: the contract of this function.
+    of(unsafe { opened(stream) }.map(|(mut stream, _)| {
+        stream.restart();
+        OFC_STATUS_OK
+    }))
+}
+
+/// Begins a frame. One that was not ended is forgotten.
+///
+/// @param stream  The stream.
+/// @param pass    Output: what the frame is for, one of OFC_PASS_*; may be NULL.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM; the status of an invalid argument.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_begin(stream: *mut ofc_stream, pass: *mut ofc_stream_pass) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let (mut stream, own) = unsafe { opened(stream) }?;
+        let out = optional(pass, own)?;
+        let pass = stream.begin();
+        if let Some(out) = out {
+            out.write(of_pass(pass));
+        }
+        Ok(OFC_STATUS_OK)
+    };
+    of(body())
+}
+
+/// An output that may be NULL, apart from the stream.
+fn optional<T: Plain>(pointer: *mut T, stream: Extent) -> Result<Option<Out<T>>, ofc_status> {
+    if pointer.is_null() {
+        return Ok(None);
+    }
+    let out = Out::new(pointer)?;
+    disjoint(&[out.extent, stream], &[])?;
+    Ok(Some(out))
+}
+
+/// Takes the next row of the frame.
+///
+/// @param stream  The stream.
+/// @param y       The row, 0 at the top.
+/// @param row     A picture of height 1; its mask, black and saturated pixels are left out.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM, OFC_STATUS_NO_FRAME, OFC_STATUS_ROW_ORDER, OFC_STATUS_TOO_MANY_ROWS,
+///         OFC_STATUS_ROW_MISMATCH; the status of an invalid argument. Unless it is OFC_STATUS_OK the call changed nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_row(
+    stream: *mut ofc_stream,
+    y: i32,
+    row: *const ofc_image,
+) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let (mut stream, own) = unsafe { opened(stream) }?;
+        // SAFETY: as above.
+        let CheckedImage { view, extents } = unsafe { image(row) }?;
+        disjoint(&[own], &extents)?;
+        let y = usize::try_from(y).unwrap_or(usize::MAX);
+        stream.row(y, &view).map(|()| OFC_STATUS_OK).map_err(of_stream_error)
+    };
+    of(body())
+}
+
+/// Ends the frame.
+///
+/// @param stream  The stream.
+/// @param pass    Output: what the next frame is for, one of OFC_PASS_*; may be NULL. Written unless an argument is invalid.
+/// @return OFC_STATUS_OK: the next pass follows from this one. OFC_STATUS_COLD_START_NEEDED: the frame does not fit the
+///         model, as ofc_stream_drift_get() says; the next pass is over colors. A cold start that comes to no F ends with
+///         OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_NO_TILT or
+///         OFC_STATUS_NO_CONSISTENT_SLANTS, or without any result with OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
+///         OFC_STATUS_SATURATED; the next pass is over colors. OFC_STATUS_NO_STREAM, OFC_STATUS_NO_FRAME,
+///         OFC_STATUS_TOO_FEW_ROWS; the status of an invalid argument.
+///
+/// Reference: section 3.4.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_end(stream: *mut ofc_stream, pass: *mut ofc_stream_pass) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let (mut stream, own) = unsafe { opened(stream) }?;
+        let out = optional(pass, own)?;
+        let ended = stream.end();
+        let state = stream.state();
+        if let Some(out) = out {
+            out.write(of_pass(state.pass()));
+        }
+        let refused = state.pass() == Pass::Colors;
+        match ended {
+            Err(error) => Err(of_stream_error(error)),
+            Ok(_) if refused && state.drift().is_some() => Ok(OFC_STATUS_COLD_START_NEEDED),
+            Ok(_) if refused => Ok(of_outcome(state.solution().outcome)),
+            Ok(_) => Ok(OFC_STATUS_OK),
+        }
+    };
+    of(body())
+}
+
+/// What the last cold start found, and the frames that refined it since.
+///
+/// @param stream    The stream.
+/// @param solution  Output. After frames that refined it: F, its stages and the fit are the last frame's, rank is that of
+///                  the cold start, and candidates have no integral (infinite).
+/// @return As ofc_solve(), for the cold start; OFC_STATUS_NOT_SOLVED, `solution` untouched, before its last pass;
+///         OFC_STATUS_NO_STREAM; the status of an invalid argument.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_solution(
+    stream: *mut ofc_stream,
+    solution: *mut ofc_solution,
+) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let (stream, own) = unsafe { opened(stream) }?;
+        let out = Out::new(solution)?;
+        disjoint(&[out.extent, own], &[])?;
+        let state = stream.state();
+        if !state.is_concluded() {
+            return Err(OFC_STATUS_NOT_SOLVED);
+        }
+        out.write(state.solution().into());
+        Ok(of_outcome(state.solution().outcome))
+    };
+    of(body())
+}
+
+/// What the last frame of OFC_PASS_REFINE says of the model from before it.
+///
+/// @param stream  The stream.
+/// @param drift   Output.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED when there was no such frame since the cold start; OFC_STATUS_NO_STREAM; the
+///         status of an invalid argument.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_drift_get(
+    stream: *mut ofc_stream,
+    drift: *mut ofc_stream_drift,
+) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let (stream, own) = unsafe { opened(stream) }?;
+        let out = Out::new(drift)?;
+        disjoint(&[out.extent, own], &[])?;
+        let Drift { inlier_share, change } = *stream.state().drift().ok_or(OFC_STATUS_NOT_SOLVED)?;
+        let nothing = Change { angles: [0.0; 3], strengths: [0.0; 3], dispersion: 0.0 };
+        let Change { angles, strengths, dispersion } = change.unwrap_or(nothing);
+        out.write(ofc_stream_drift {
+            inlier_share,
+            angle_rad: angles,
+            strength_ratio: strengths,
+            dispersion_ratio: dispersion,
+            refined: i32::from(change.is_some()),
+            reserved: 0,
+        });
+        Ok(OFC_STATUS_OK)
+    };
+    of(body())
+}
+
+/// Unit normals of a row's inliers, under the model there is: any row of any frame.
+///
+/// @param stream   The stream.
+/// @param row      A picture of height 1.
+/// @param normals  Output: width times (x, y, z) floats, zero where there is no normal. Frame: x right, y up, z toward the
+///                 camera.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH; OFC_STATUS_NO_STREAM; the status of an invalid
+///         argument.
+///
+/// Reference: eq. 8.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_normals_row(
+    stream: *mut ofc_stream,
+    row: *const ofc_image,
+    normals: *mut f32,
+) -> ofc_status {
+    // SAFETY: the contract of this function.
+    unsafe { write_row(stream, row, normals, 3, State::normals) }
+}
+
+/// As ofc_stream_normals_row(), in 8 bits a component.
+///
+/// @param stream   The stream.
+/// @param row      A picture of height 1.
+/// @param normals  Output: width times (x, y, z) bytes, (n + 1) / 2 of 255, rounded; zeros, which is no normal's, where there
+///                 is none.
+/// @return As ofc_stream_normals_row().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_normals_row_packed(
+    stream: *mut ofc_stream,
+    row: *const ofc_image,
+    normals: *mut u8,
+) -> ofc_status {
+    // SAFETY: the contract of this function.
+    unsafe { write_row(stream, row, normals, 3, State::packed_normals) }
+}
+
+/// Which pixels of a row are inliers, under the model there is.
+///
+/// @param stream  The stream.
+/// @param row     A picture of height 1.
+/// @param flags   Output: width bytes, 255 for an inlier and 0 elsewhere.
+/// @return As ofc_stream_normals_row().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_stream_inliers_row(
+    stream: *mut ofc_stream,
+    row: *const ofc_image,
+    flags: *mut u8,
+) -> ofc_status {
+    // SAFETY: the contract of this function.
+    unsafe { write_row(stream, row, flags, 1, State::inliers) }
+}
+
+/// The common body of the three: `count` values a pixel.
+///
+/// # Safety
+/// The stream, the row and the output are the caller's promise.
+unsafe fn write_row<T: Plain>(
+    stream: *mut ofc_stream,
+    row: *const ofc_image,
+    out: *mut T,
+    count: usize,
+    write: impl FnOnce(&State, &Image, &mut [T]) -> Result<(), StreamError>,
+) -> ofc_status {
+    let body = || {
+        // SAFETY: the caller's promise.
+        let (stream, own) = unsafe { opened(stream) }?;
+        // SAFETY: as above.
+        let CheckedImage { view, extents: [a, b, c, d, e] } = unsafe { image(row) }?;
+        let values = view.width().checked_mul(count).ok_or(OFC_STATUS_TOO_LARGE)?;
+        disjoint(&[extent(out.cast_const(), values)?], &[a, b, c, d, e, own])?;
+        // SAFETY: checked and disjoint.
+        let out = unsafe { output_slice(out, values) };
+        write(stream.state(), &view, out).map(|()| OFC_STATUS_OK).map_err(of_stream_error)
+    };
+    of(body())
+}

@@ -1,0 +1,477 @@
+//! Rows instead of pictures.
+
+use ofc_core::image::{Image, Order, Sample};
+use ofc_core::lmeds::{FitError, Method};
+use ofc_core::normals::{self, Length};
+use ofc_core::rng::Rng;
+use ofc_core::solve::{Outcome, SlantFallback, Solution, solve, workspace_len};
+use ofc_core::stream::{Change, Memory, Params, Pass, State, Stream, StreamError, places_len, values_len};
+use ofc_core::tilt::TiltEstimator;
+use ofc_tests::bust::bust;
+use ofc_tests::linear::{Matrix, degrees_between, length};
+use ofc_tests::photographs::load;
+use ofc_tests::scene::{self, median_error};
+use ofc_tests::scenes::{
+    Layout, Scene, cylinder, direction, ellipsoid, plane, sphere, table_1_f, three_lights,
+};
+use ofc_tests::tolerances::{SAMPLED_ANGLE, SAMPLED_STRENGTH};
+
+/// A stream over buffers of its own.
+struct Camera {
+    state: State,
+    values: Vec<f32>,
+    places: Vec<u8>,
+}
+
+impl Camera {
+    fn new(image: &Image, params: Params) -> Self {
+        let (width, height, sample) = (image.width(), image.height(), params.solve.lmeds.sample_size);
+        let state = State::new(width, height, image.sample(), params).unwrap();
+        // Whatever the memory holds, it means nothing.
+        let values = vec![f32::NAN; values_len(width, height, sample)];
+        Self { state, values, places: vec![0xa5; places_len(width, height, sample)] }
+    }
+
+    fn stream(&mut self) -> Stream<'_> {
+        let memory = Memory { values: &mut self.values, places: &mut self.places };
+        Stream::new(&mut self.state, memory).unwrap()
+    }
+
+    /// One frame.
+    fn frame(&mut self, image: &Image) -> Result<Pass, StreamError> {
+        self.stream().begin();
+        for y in 0..image.height() {
+            // As if the caller had been away between any two rows.
+            self.stream().row(y, &image.row(y).unwrap()).unwrap();
+        }
+        self.stream().end()
+    }
+
+    /// Frames until there is an answer, at most three.
+    fn cold(&mut self, image: &Image) -> Result<Pass, StreamError> {
+        let mut pass = self.frame(image)?;
+        for expected in [Pass::Tilts, Pass::Slants] {
+            if pass == expected {
+                pass = self.frame(image)?;
+            }
+        }
+        Ok(pass)
+    }
+}
+
+fn sampling(sample_size: u32) -> Params {
+    let mut params = Params::default();
+    params.solve.lmeds.sample_size = sample_size;
+    params
+}
+
+fn whole(image: &Image, params: &Params) -> Solution {
+    let pixels = image.width() * image.height();
+    let mut workspace = vec![0.0; workspace_len(pixels, params.solve.lmeds.sample_size)];
+    solve(image, &params.solve, &mut workspace).unwrap()
+}
+
+/// Every number of a solution, with its bits: shortest round-trip digits, and the sign of zero.
+fn digits(solution: &Solution) -> String {
+    format!("{solution:?}")
+}
+
+/// Sample, model, tilts, choice, normals and inliers of rows are those of the picture, to the bit.
+fn assert_same(image: &Image, params: Params) -> (Outcome, usize) {
+    let mut expected = whole(image, &params);
+    if let Some([alone]) = expected.choice.as_mut().map(|choice| &mut choice.candidates[..]) {
+        // Not worth a pass.
+        alone.integral = f64::INFINITY;
+    }
+    let mut camera = Camera::new(image, params);
+    let pass = camera.cold(image).unwrap();
+    assert_eq!(digits(camera.state.solution()), digits(&expected));
+    assert_eq!(pass == Pass::Refine, expected.outcome == Outcome::Solved);
+    if pass != Pass::Refine {
+        return (expected.outcome, 0);
+    }
+    let choice = expected.choice.as_ref().unwrap();
+    let (width, height) = (image.width(), image.height());
+    let mut picture = vec![0.0; width * height * 3];
+    let bits = |window: &_| expected.inliers.bits(window);
+    normals::compute(image, bits, &choice.orientation.f_inverse, Length::Unit, &mut picture, width * 3)
+        .unwrap();
+    let mut mask = vec![0; width * height];
+    expected.inliers.mark(image, &mut mask);
+    let (mut row, mut packed, mut flags) = (vec![9.0; width * 3], vec![9; width * 3], vec![9; width]);
+    for y in 0..height {
+        let view = image.row(y).unwrap();
+        camera.state.normals(&view, &mut row).unwrap();
+        camera.state.packed_normals(&view, &mut packed).unwrap();
+        camera.state.inliers(&view, &mut flags).unwrap();
+        let expected = &picture[y * width * 3..][..width * 3];
+        assert!(row.iter().zip(expected).all(|(a, b)| a.to_bits() == b.to_bits()), "row {y}");
+        assert_eq!(flags, mask[y * width..][..width]);
+        for (i, (&byte, &component)) in packed.iter().zip(expected).enumerate() {
+            let normal =
+                if flags[i / 3] == 0 { 0.0 } else { f64::midpoint(f64::from(component), 1.0) * 255.0 };
+            assert!((f64::from(byte) - normal).abs() <= 0.5 + 1e-4, "row {y}: {byte} for {component}");
+        }
+    }
+    (Outcome::Solved, choice.candidates.len())
+}
+
+#[test]
+fn a_sample_of_everything_gives_the_same_bits() {
+    let mut rng = Rng::new(3);
+    let formats = [Sample::U8, Sample::U16, Sample::F32];
+    // Figure 1: two pairs of slants agree with these tilts.
+    let ambiguous = [(150.0, 40.0, 20.0), (170.0, 30.0, -120.0), (200.0, 5.0, 0.0)]
+        .map(|(strength, slant, tilt)| direction(slant, tilt).map(|component| component * strength));
+    let (mut solved, mut chosen) = (0, 0);
+    for (width, height) in [(110, 90), (64, 65), (63, 71), (130, 63), (65, 64)] {
+        let radius = 0.45 * width.min(height) as f64;
+        let bodies = [
+            Scene::render(width, height, three_lights(), sphere(radius / 0.6, 36.0)),
+            Scene::render(width, height, ambiguous, sphere(radius / 0.7, 44.0)),
+            Scene::render(width, height, table_1_f(), ellipsoid([radius, 0.9 * radius, radius], 30.0)),
+        ];
+        for body in bodies {
+            let noisy = body.with_noise(0.7, &mut rng);
+            for (sample, order) in formats.into_iter().zip([Some(Order::Rgb), Some(Order::Bgra), None]) {
+                let scene = if sample == Sample::F32 { noisy.clone() } else { noisy.clone().rounded() };
+                let encoded = scene.encode_as(Layout { sample, order, gap: 12 });
+                let usable = scene.colors.iter().filter(|c| c.iter().any(|&v| v > 0.0)).count();
+                // All pixels, and exactly as many as there are.
+                for size in [width * height, usable] {
+                    let (outcome, candidates) = assert_same(&encoded.image(), sampling(size as u32));
+                    solved += usize::from(outcome == Outcome::Solved);
+                    chosen += usize::from(candidates > 1);
+                }
+            }
+        }
+    }
+    println!("{solved} solved, {chosen} of them with a choice");
+    assert!(solved > 30 && chosen > 0 && chosen < solved);
+}
+
+#[test]
+fn one_pixel_less_than_everything_gives_other_bits() {
+    let scene =
+        Scene::render(64, 64, three_lights(), sphere(48.0, 36.0)).with_noise(0.7, &mut Rng::new(3)).rounded();
+    let usable = scene.colors.iter().filter(|c| c.iter().any(|&v| v > 0.0)).count();
+    let encoded = scene.encode();
+    let params = sampling(usable as u32 - 1);
+    let mut camera = Camera::new(&encoded.image(), params);
+    camera.cold(&encoded.image()).unwrap();
+    assert_ne!(digits(camera.state.solution()), digits(&whole(&encoded.image(), &params)));
+}
+
+#[test]
+fn degenerate_scenes_are_refused_like_pictures() {
+    let mut rng = Rng::new(4);
+    let mut outcomes = Vec::new();
+    for scene in [
+        Scene::render(70, 60, three_lights(), cylinder(40.0, 0.3, 40.0)),
+        Scene::render(70, 60, three_lights(), plane([0.1, 0.2, 0.97])),
+        Scene::paint(70, 60, |x, y| [200.0 - x as f64, 50.0 + y as f64, 40.0]),
+        Scene::paint(70, 60, |x, _| [x as f64 + 1.0; 3]),
+    ] {
+        let layout = Layout { sample: Sample::U8, order: Some(Order::Rgb), gap: 0 };
+        let encoded = scene.with_noise(0.5, &mut rng).rounded().encode_as(layout);
+        outcomes.push(assert_same(&encoded.image(), sampling(4200)).0);
+    }
+    assert!(
+        outcomes.contains(&Outcome::RankDeficient) && !outcomes.contains(&Outcome::Solved),
+        "{outcomes:?}"
+    );
+    // Few enough colors to fit anything: the noise is that of neighbours, in a row.
+    let few = Scene::paint(70, 60, |x, y| {
+        let level = |i: usize| 40.0 + 20.0 * (i % 7) as f64;
+        [level(x / 10), level(y / 10), level((x + y) / 20)]
+    });
+    let encoded = few.encode_as(Layout { sample: Sample::U8, order: Some(Order::Rgb), gap: 0 });
+    println!("{:?}", assert_same(&encoded.image(), sampling(4200)));
+}
+
+#[test]
+fn parameters_reach_every_pass() {
+    let scene =
+        Scene::render(70, 60, three_lights(), sphere(48.0, 36.0)).with_noise(0.7, &mut Rng::new(3)).rounded();
+    let encoded = scene.encode();
+    let image = encoded.image();
+    let base = sampling(4200);
+    let mut outcomes = Vec::new();
+    for fallback in [SlantFallback::Refuse, SlantFallback::LeastSquares] {
+        for tilts in
+            [TiltEstimator::Pentland, TiltEstimator::Given([0.3, 2.4, -1.8]), TiltEstimator::Given([0.0; 3])]
+        {
+            for method in [Method::LeastMedian, Method::LeastSquares] {
+                let mut params = base;
+                (params.solve.fallback, params.solve.tilts, params.solve.lmeds.method) =
+                    (fallback, tilts, method);
+                params.solve.saturation = Some(180.0);
+                params.solve.lmeds.seed = 77;
+                outcomes.push(assert_same(&image, params).0);
+            }
+        }
+    }
+    assert!(
+        outcomes.contains(&Outcome::Solved) && outcomes.contains(&Outcome::NoConsistentSlants),
+        "{outcomes:?}"
+    );
+}
+
+#[test]
+fn masked_photographs_give_the_same_bits() {
+    for name in ["cat_figurine", "gelsight_ball_4mm", "gelsight_ball_9mm"] {
+        let Some(photograph) = load(name) else { return };
+        let image = photograph.image();
+        println!("{name}: {:?}", assert_same(&image, sampling((image.width() * image.height()) as u32)));
+    }
+}
+
+/// A bust in QVGA with noise, rounded to bytes.
+fn portrait(seed: u64) -> scene::Scene {
+    scene::Scene::new(320, 240, &scene::PAPER, bust(240.0)).with_noise(1.0, seed).quantized()
+}
+
+/// The largest angle between rows of two F, in degrees, and the largest relative difference of their lengths.
+fn apart(a: &Matrix, b: &Matrix) -> (f64, f64) {
+    let rows = || a.iter().zip(b);
+    let angle = rows().map(|(&a, &b)| degrees_between(a, b)).fold(0.0, f64::max);
+    (angle, rows().map(|(&a, &b)| (length(a) / length(b) - 1.0).abs()).fold(0.0, f64::max))
+}
+
+#[test]
+fn a_sample_of_a_portrait() {
+    println!("against solve: largest angle of F's rows, strength; median error of the normals of both");
+    for seed in 0..8 {
+        let (mut params, scene) = (Params::default(), portrait(seed));
+        params.solve.lmeds.seed = seed;
+        let image = scene.whole();
+        let mut picture = params;
+        picture.solve.lmeds.sample_size = 10_000;
+        let expected = whole(&image, &picture).choice.unwrap().orientation;
+        let mut camera = Camera::new(&image, params);
+        assert_eq!(camera.cold(&image), Ok(Pass::Refine));
+        let sampled = camera.state.solution().fit.unwrap().usable;
+        let used = params.solve.lmeds.sample_size as usize;
+        assert!(sampled >= used / 2 && sampled <= used, "{sampled}");
+        let found = camera.state.orientation().unwrap();
+        let (angle, strength) = apart(&found.f, &expected.f);
+        let errors = [found, &expected].map(|orientation| median_error(&scene, &orientation.f_inverse));
+        println!("{seed}: {angle:.2} deg, {strength:.4}; {:.2}, {:.2} deg", errors[0], errors[1]);
+        assert!(angle < SAMPLED_ANGLE && strength < SAMPLED_STRENGTH);
+        assert!(errors[0] < errors[1] + SAMPLED_ANGLE);
+    }
+}
+
+#[test]
+fn frames_that_are_none() {
+    let scene = portrait(1);
+    let image = scene.whole();
+    let row = |y| image.row(y).unwrap();
+    let params = Params::default();
+    let mut camera = Camera::new(&image, params);
+    let mut stream = camera.stream();
+    assert_eq!(stream.row(0, &row(0)), Err(StreamError::NoFrame));
+    assert_eq!(stream.end(), Err(StreamError::NoFrame));
+    assert_eq!(stream.state().normals(&row(0), &mut [0.0; 960]), Err(StreamError::NotSolved));
+    assert_eq!(stream.begin(), Pass::Colors);
+    assert_eq!(stream.row(1, &row(1)), Err(StreamError::RowOrder));
+    stream.row(0, &row(0)).unwrap();
+    assert_eq!(stream.row(0, &row(0)), Err(StreamError::RowOrder));
+    assert_eq!(stream.row(1, &image), Err(StreamError::Row));
+    let narrow = Image::interleaved(&[0; 957], 319, 1, 957, Sample::U8, Order::Rgb).unwrap();
+    let deep = Image::interleaved(&[0; 1920], 320, 1, 1920, Sample::U16, Order::Rgb).unwrap();
+    assert_eq!(stream.row(1, &narrow), Err(StreamError::Row));
+    assert_eq!(stream.row(1, &deep), Err(StreamError::Row));
+    assert_eq!(stream.end(), Err(StreamError::TooFewRows));
+    assert_eq!(stream.end(), Err(StreamError::NoFrame));
+    // Nothing of this is remembered, nor of a frame that was begun and left.
+    assert_eq!(stream.begin(), Pass::Colors);
+    stream.row(0, &row(100)).unwrap();
+    assert_eq!(stream.begin(), Pass::Colors);
+    for y in 0..240 {
+        stream.row(y, &row(y)).unwrap();
+    }
+    assert_eq!(stream.row(240, &row(0)), Err(StreamError::TooManyRows));
+    assert_eq!(stream.end(), Ok(Pass::Tilts));
+    assert_eq!(stream.begin(), Pass::Tilts);
+    stream.row(0, &row(200)).unwrap();
+    assert_eq!(stream.end(), Err(StreamError::TooFewRows));
+    let mut other = Camera::new(&image, params);
+    other.frame(&image).unwrap();
+    camera.cold(&image).unwrap();
+    other.cold(&image).unwrap();
+    assert_eq!(digits(camera.state.solution()), digits(other.state.solution()));
+    assert_eq!(camera.state.normals(&row(0), &mut [0.0; 959]), Err(StreamError::TooShort));
+    assert_eq!(camera.state.packed_normals(&row(0), &mut [0; 959]), Err(StreamError::TooShort));
+    assert_eq!(camera.state.inliers(&row(0), &mut [0; 319]), Err(StreamError::TooShort));
+    assert_eq!(camera.state.normals(&narrow, &mut [0.0; 960]), Err(StreamError::Row));
+    camera.stream().restart();
+    assert_eq!(camera.state.pass(), Pass::Colors);
+}
+
+#[test]
+fn streams_that_are_none() {
+    let new = |width, height, params| State::new(width, height, Sample::U8, params).err();
+    let params = Params::default();
+    assert_eq!(new(0, 240, params), Some(StreamError::Size));
+    assert_eq!(new(320, 0, params), Some(StreamError::Size));
+    assert_eq!(new(usize::MAX, 2, params), Some(StreamError::Size));
+    assert_eq!(new(320, 240, sampling(23)), Some(StreamError::Params));
+    assert_eq!(new(320, 240, sampling(24)), None);
+    let mut chojnacki = params;
+    chojnacki.solve.tilts = TiltEstimator::Chojnacki;
+    assert_eq!(new(320, 240, chojnacki), Some(StreamError::Params));
+    let mut fallback = params;
+    fallback.solve.fallback = SlantFallback::TiltIntegrability;
+    assert_eq!(new(320, 240, fallback), Some(StreamError::Params));
+    let mut state = State::new(320, 240, Sample::U8, params).unwrap();
+    let (values, places) = (values_len(320, 240, 2048), places_len(320, 240, 2048));
+    assert_eq!((values, places), (10_240, 2048));
+    assert!(size_of::<State>() + 4 * values + places <= 48 << 10, "{}", size_of::<State>());
+    for (short_values, short_places) in [(1, 0), (0, 1)] {
+        let (mut values, mut places) = (vec![0.0; values - short_values], vec![0; places - short_places]);
+        let memory = Memory { values: &mut values, places: &mut places };
+        assert_eq!(Stream::new(&mut state, memory).err(), Some(StreamError::TooShort));
+    }
+}
+
+#[test]
+fn dark_and_white_frames_say_so() {
+    for (value, expected) in [(0.0, FitError::Dark), (255.0, FitError::Saturated)] {
+        let scene = Scene::paint(40, 30, |_, _| [value; 3]);
+        let encoded = scene.encode_as(Layout { sample: Sample::U8, order: Some(Order::Rgb), gap: 0 });
+        let mut camera = Camera::new(&encoded.image(), Params::default());
+        assert_eq!(camera.frame(&encoded.image()), Err(StreamError::Fit(expected)));
+        assert_eq!(camera.state.pass(), Pass::Colors);
+    }
+}
+
+/// A stream that has seen a portrait.
+fn solved(params: Params) -> (Camera, scene::Scene) {
+    let scene = portrait(100);
+    let mut camera = Camera::new(&scene.whole(), params);
+    assert_eq!(camera.cold(&scene.whole()), Ok(Pass::Refine));
+    assert_eq!(camera.state.drift(), None);
+    (camera, scene)
+}
+
+fn refined(camera: &mut Camera, scene: &scene::Scene) -> (f64, Change) {
+    assert_eq!(camera.frame(&scene.whole()), Ok(Pass::Refine));
+    let drift = camera.state.drift().unwrap();
+    (drift.inlier_share, drift.change.unwrap())
+}
+
+#[test]
+fn frames_of_the_same_scene_refine_the_model() {
+    let params = Params::default();
+    let (mut camera, _) = solved(params);
+    println!(
+        "against solve of the frame: angle, strength; against the frame before: share, angle, dispersion"
+    );
+    for seed in 101..109 {
+        let scene = portrait(seed);
+        let before = camera.state.orientation().unwrap().f;
+        let (share, change) = refined(&mut camera, &scene);
+        let expected = whole(&scene.whole(), &params).choice.unwrap().orientation;
+        let found = camera.state.orientation().unwrap();
+        let (angle, strength) = apart(&found.f, &expected.f);
+        let largest = change.angles.into_iter().fold(0.0, f64::max).to_degrees();
+        println!(
+            "{seed}: {angle:.2} deg, {strength:.4}; {share:.3}, {largest:.2} deg, {:.4}",
+            change.dispersion
+        );
+        assert!(angle < SAMPLED_ANGLE && strength < SAMPLED_STRENGTH);
+        assert!(share > 0.9 && largest < SAMPLED_ANGLE && (change.dispersion - 1.0).abs() < 0.05);
+        // What is reported is what happened.
+        for ((angle, strength), (&old, &new)) in
+            change.angles.iter().zip(change.strengths).zip(before.iter().zip(&found.f))
+        {
+            assert!((angle.to_degrees() - degrees_between(old, new)).abs() < 1e-6);
+            assert!((strength - length(new) / length(old)).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn noise_that_comes_and_goes() {
+    let picture = |noise, seed| {
+        scene::Scene::new(320, 240, &scene::CLEAN, bust(240.0)).with_noise(noise, seed).quantized()
+    };
+    let first = picture(1.0, 0);
+    let mut camera = Camera::new(&first.whole(), Params::default());
+    assert_eq!(camera.cold(&first.whole()), Ok(Pass::Refine));
+    let (mut dispersion, mut most) = (1.0, 0.0_f64);
+    for (seed, noise) in [1.0, 2.0, 3.0, 3.0, 3.0, 2.0, 1.0, 1.0, 1.0, 1.0].into_iter().enumerate() {
+        let (share, change) = refined(&mut camera, &picture(noise, seed as u64 + 1));
+        dispersion *= change.dispersion;
+        most = most.max(dispersion);
+        println!("{noise}: share {share:.3}, dispersion {:.3}, {dispersion:.3} in all", change.dispersion);
+    }
+    assert!(most > 1.5 && (dispersion - 1.0).abs() < 0.1);
+    let last = whole(&picture(1.0, 10).whole(), &Params::default()).choice.unwrap().orientation;
+    let (angle, strength) = apart(&camera.state.orientation().unwrap().f, &last.f);
+    println!("against solve of the last frame: {angle:.2} deg, {strength:.4}");
+    assert!(angle < SAMPLED_ANGLE && strength < SAMPLED_STRENGTH);
+}
+
+#[test]
+fn lights_that_grow_stronger_are_followed() {
+    let (mut camera, _) = solved(Params::default());
+    let f = camera.state.orientation().unwrap().f;
+    for frame in 1..=20_u32 {
+        let gain = 1.0 + 0.02 * f64::from(frame);
+        let lights = scene::PAPER.map(|(angles, color)| (angles, color.map(|c| c * gain)));
+        let brighter = scene::Scene::new(320, 240, &lights, bust(240.0));
+        refined(&mut camera, &brighter.with_noise(1.0, u64::from(frame)).quantized());
+    }
+    let (angle, _) = apart(&camera.state.orientation().unwrap().f, &f);
+    assert!(angle < SAMPLED_ANGLE, "{angle}");
+    for (&new, &old) in camera.state.orientation().unwrap().f.iter().zip(&f) {
+        assert!((length(new) / length(old) / 1.4 - 1.0).abs() < SAMPLED_STRENGTH);
+    }
+}
+
+#[test]
+fn other_lights_need_a_cold_start() {
+    let (mut camera, first) = solved(Params::default());
+    let before = digits(camera.state.solution());
+    let other = scene::Scene::new(320, 240, &scene::CLEAN, bust(240.0)).with_noise(1.0, 7).quantized();
+    assert_eq!(camera.frame(&other.whole()), Ok(Pass::Colors));
+    let drift = *camera.state.drift().unwrap();
+    println!("{drift:?}");
+    assert!(drift.inlier_share < 0.5 && drift.change.is_none());
+    // The old model is as it was, and serves until there is a new one.
+    assert_eq!(digits(camera.state.solution()), before);
+    assert!(camera.state.orientation().is_some());
+    assert_eq!(camera.cold(&other.whole()), Ok(Pass::Refine));
+    assert_eq!(camera.state.drift(), None);
+    // As a stream that had never seen anything else.
+    let mut fresh = Camera::new(&other.whole(), Params::default());
+    fresh.cold(&other.whole()).unwrap();
+    assert_eq!(digits(camera.state.solution()), digits(fresh.state.solution()));
+    // How many must fit is the caller's to say; a black frame fits nobody.
+    let (mut strict, _) = solved(Params { smallest_share: 0.99, ..Params::default() });
+    assert_eq!(strict.frame(&first.whole()), Ok(Pass::Colors));
+    let (mut lenient, _) = solved(Params { smallest_share: 0.0, ..Params::default() });
+    let black = Scene::paint(320, 240, |_, _| [0.0; 3]);
+    let black = black.encode_as(Layout { sample: Sample::U8, order: Some(Order::Rgb), gap: 0 });
+    assert_eq!(lenient.frame(&black.image()), Ok(Pass::Colors));
+    assert_eq!(lenient.state.drift().map(|drift| drift.inlier_share), Some(0.0));
+}
+
+#[test]
+fn an_exact_scene_stays_exact() {
+    let scene = Scene::render(110, 90, three_lights(), sphere(60.0, 36.0));
+    let encoded = scene.encode();
+    let mut camera = Camera::new(&encoded.image(), Params::default());
+    assert_eq!(camera.cold(&encoded.image()), Ok(Pass::Refine));
+    for _ in 0..5 {
+        assert_eq!(camera.frame(&encoded.image()), Ok(Pass::Refine));
+        let drift = camera.state.drift().unwrap();
+        println!("{drift:?}");
+        assert!(drift.inlier_share > 0.99);
+    }
+    let (angle, strength) = apart(&camera.state.orientation().unwrap().f, &three_lights());
+    println!("{angle} {strength}");
+    assert!(angle < 0.01 && strength < 1e-4);
+}
