@@ -35,17 +35,24 @@ Answer refusal(const std::string &name, ofc_status status)
     return {name, cv::Mat(), std::nullopt, ofc_status_message(status)};
 }
 
-// The orthogonal matrix that turns `from` into `to` best in the least-squares sense (Procrustes), applied.
+// `from` turned by the orthogonal matrix that brings it nearest to `to` in the sum of distances: Procrustes, repeated
+// with weights, because plain least squares is decided by the shadowed pixels that the rejection let through.
 cv::Mat turned_to(const cv::Mat &from, const cv::Mat &to)
 {
-    cv::Matx33d sum = cv::Matx33d::zeros();
-    for (int y = 0; y < from.rows; y++)
-        for (int x = 0; x < from.cols; x++) {
-            const cv::Vec3d n = from.at<cv::Vec3f>(y, x), t = to.at<cv::Vec3f>(y, x);
-            sum += t * n.t(); // zero where either has no normal
-        }
-    const cv::SVD svd(cv::Mat(sum), cv::SVD::FULL_UV);
-    const cv::Mat best = svd.u * svd.vt;
+    cv::Matx33d best = cv::Matx33d::zeros(); // all distances alike: the first round is least squares
+    constexpr int rounds = 20;
+    for (int round = 0; round < rounds; round++) {
+        cv::Matx33d sum = cv::Matx33d::zeros();
+        for (int y = 0; y < from.rows; y++)
+            for (int x = 0; x < from.cols; x++) {
+                const cv::Vec3d n = from.at<cv::Vec3f>(y, x), t = to.at<cv::Vec3f>(y, x);
+                sum += t * n.t() * (1 / std::max(cv::norm(best * n - t), 1e-3)); // zero where either has no normal
+            }
+        cv::Matx33d u, vt;
+        cv::Matx31d values;
+        cv::SVD::compute(sum, values, u, vt);
+        best = u * vt;
+    }
     cv::Mat turned;
     cv::transform(from, turned, best);
     return turned;
