@@ -135,7 +135,7 @@ cv::Mat plot_colors(const Picture &picture, const ofc_solution &s, const cv::Mat
     for (int c = 0; c < 3; c++) {
         const cv::Point end = view.at(axes[c]);
         cv::arrowedLine(plot, view.at({0, 0, 0}), end, axis_colors[c], 2, cv::LINE_AA, 0, 0.05);
-        put_text(plot, std::string(1, "rgb"[c]), end + cv::Point(8, -4), 0.6, axis_colors[c]);
+        put_text(plot, std::string(1, "rgb"[c]), end + (c == 1 ? cv::Point(-16, -8) : cv::Point(8, -4)), 0.6, axis_colors[c]);
     }
 
     // Colors in pixel values: a Mat of r, g, b floats whatever the format.

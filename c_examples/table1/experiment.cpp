@@ -1,6 +1,8 @@
 #include "table1/experiment.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace {
 
@@ -83,6 +85,11 @@ std::vector<cv::Vec2d> along_branch(const ofc_image &image, const ofc_solution &
 
 } // namespace
 
+cv::Vec2d Experiment::least_on_branch() const
+{
+    return *std::min_element(branch.begin(), branch.end(), [](const cv::Vec2d &a, const cv::Vec2d &b) { return a[1] < b[1]; });
+}
+
 Experiment run_experiment(const Relief &relief, double noise, std::uint64_t seed)
 {
     Experiment e;
@@ -106,11 +113,13 @@ Experiment run_experiment(const Relief &relief, double noise, std::uint64_t seed
     const ofc_status with_tilts = solve(image, params, nullptr, given);
     const Estimates estimates = estimates_of(image, s.inliers);
     const auto triple = [](const double *values) { return Triple{values[0], values[1], values[2]}; };
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const Triple nothing = {none, none, none};
     e.table.angles("tilt", "correct", correct.tilts);
     e.table.angles("tilt", "Pentland", triple(s.tilts.tilt_rad));
     e.table.angles("slant", "correct", correct.slants);
     e.table.angles("slant", "OFC", triple(s.slant_rad));
-    e.table.angles("slant", "OFC (correct tilts)", triple(given.slant_rad));
+    e.table.angles("slant", "OFC (correct tilts)", with_tilts == OFC_STATUS_OK ? triple(given.slant_rad) : nothing);
     e.table.angles("slant", "Pentland", estimates.pentland_slants);
     e.table.angles("slant", "Lee-Rosenfeld", estimates.lee_rosenfeld_slants);
     e.table.angles("slant", "Zheng-Chellappa", estimates.zheng_chellappa_slants);
