@@ -106,12 +106,14 @@ cv::Mat color_picture(const cv::Mat &values, cv::Vec2d range, const std::string 
         range += cv::Vec2d(-least, least);
     cv::Mat map = colors_of(values, range), colors;
     const double extent = range[1] - range[0];
-    // Small pictures are enlarged so that the text beside them fits.
-    const int factor = std::max(1, 240 / std::max(1, map.rows));
+    // Small pictures are enlarged so that the text beside them is not larger than they are.
+    const int factor = std::max(1, cvRound(400.0 / std::max({1, map.rows, map.cols})));
     cv::resize(map, map, cv::Size(), factor, factor, cv::INTER_NEAREST);
     constexpr int margin = 16, bar_width = 18, text_width = 84, title_height = 30;
-    cv::Mat sheet(std::max(map.rows, 120) + title_height + margin, map.cols + 3 * margin + bar_width + text_width,
-                  CV_8UC3, sheet_color);
+    const int title_width = cv::getTextSize(title, font, 0.45, 1, nullptr).width;
+    const cv::Size size(std::max(map.cols + 3 * margin + bar_width + text_width, title_width + 2 * margin),
+                        std::max(map.rows, 120) + title_height + margin);
+    cv::Mat sheet(size, CV_8UC3, sheet_color);
     map.copyTo(sheet(cv::Rect(margin, title_height, map.cols, map.rows)));
     const cv::Rect bar(2 * margin + map.cols, title_height, bar_width, sheet.rows - title_height - margin);
     cv::Mat ramp(bar.height, 1, CV_8U);

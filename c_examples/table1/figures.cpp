@@ -21,9 +21,11 @@ cv::Mat plot_branch(const Experiment &e, cv::Size size)
         range = {std::min(range[0], point[1]), std::max(range[1], point[1])};
     const double step = round_step(std::max(range[1] - range[0], 1e-3), 6);
     range = {std::floor(range[0] / step) * step, std::ceil(range[1] / step) * step};
+    const cv::Vec2d least = e.least_on_branch();
     const Axes axes{cv::Rect(64, 32, size.width - 100, size.height - 80), {0, 90}, range, "slant 1, degrees",
                     "log10 of the integral (15) along branch " +
-                        std::to_string(e.solution.candidates[e.solution.chosen].branch)};
+                        std::to_string(e.solution.candidates[e.solution.chosen].branch) + ": least at " +
+                        number(least[0], 1) + " degrees"};
     axes.draw(plot, 15, step);
     const cv::Scalar blue(178, 114, 0), red(40, 40, 210);
     for (std::size_t i = 1; i < e.branch.size(); i++)
@@ -33,9 +35,7 @@ cv::Mat plot_branch(const Experiment &e, cv::Size size)
     const double slant = degrees(e.solution.slant_rad[0]);
     cv::line(plot, axes.at(slant, range[0]), axes.at(slant, range[1]), red, 1, cv::LINE_AA);
     put_text(plot, "S", axes.at(slant, range[1]) + cv::Point(6, 20), 0.7, red);
-    const cv::Vec2d least = e.least_on_branch();
     cv::circle(plot, axes.at(least[0], least[1]), 5, blue, 2, cv::LINE_AA);
-    put_text(plot, "least, at " + number(least[0], 1), axes.at(least[0], least[1]) + cv::Point(8, -10), 0.45, blue);
     return plot;
 }
 
