@@ -45,6 +45,11 @@ std::string text_of(const Answer &answer)
     return answer.median_deg ? text : answer.refusal;
 }
 
+std::string short_text_of(const Answer &answer)
+{
+    return answer.median_deg ? number(*answer.median_deg, 0.01) : "-";
+}
+
 nlohmann::json report(const Options &options, const Experiment &e)
 {
     nlohmann::json report = {{"status", ofc_status_message(e.status)},
@@ -58,6 +63,9 @@ nlohmann::json report(const Options &options, const Experiment &e)
     report["inliers"] = e.solution.inlier_count;
     report["candidates"] = e.solution.candidate_count;
     report["table"] = e.table.json();
+    if (!e.branch.empty())
+        report["branch"] = {{"solution_slant_deg", degrees(e.solution.slant_rad[0])},
+                            {"least_integral_slant_deg", e.least_on_branch()[0]}};
     for (const Answer &answer : e.answers)
         if (answer.median_deg)
             report["median_error_deg"][answer.name] = *answer.median_deg;
@@ -79,8 +87,10 @@ int run(const Options &options)
         sheet.add(figure.title, figure.image);
     }
     std::vector<Line> lines;
+    if (e.solved())
+        lines.push_back({"median", "angular error over " + std::to_string(e.solution.inlier_count) + " inliers, degrees"});
     for (const Answer &answer : e.answers)
-        lines.push_back({text_of(answer), "   " + answer.name});
+        lines.push_back({short_text_of(answer), answer.name + (answer.median_deg ? "" : ": " + answer.refusal)});
     if (!e.solved())
         lines.push_back({"refused", ofc_status_message(e.status)});
     write_image(out / "overview.png", sheet.draw(lines));

@@ -6,6 +6,13 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+namespace {
+
+constexpr uchar sheet_gray = 244;
+const cv::Scalar sheet_color(sheet_gray, sheet_gray, sheet_gray);
+
+} // namespace
+
 void put_text(cv::Mat &image, const std::string &text, cv::Point at, double scale, cv::Scalar color)
 {
     cv::putText(image, text, at, font, scale, color, 1, cv::LINE_AA);
@@ -28,6 +35,16 @@ double round_step(double range, int count)
     return 10 * power;
 }
 
+std::vector<double> ticks(cv::Vec2d range, double step)
+{
+    constexpr int most = 100;
+    const double first = std::ceil(range[0] / step - 1e-9);
+    std::vector<double> values;
+    for (int i = 0; i < most && (first + i) * step <= range[1] + 1e-9 * step; i++)
+        values.push_back((first + i) * step);
+    return values;
+}
+
 cv::Point Axes::at(double x_value, double y_value) const
 {
     return {cvRound(area.x + area.width * (x_value - x[0]) / (x[1] - x[0])),
@@ -36,13 +53,13 @@ cv::Point Axes::at(double x_value, double y_value) const
 
 void Axes::draw(cv::Mat &plot, double x_step, double y_step) const
 {
-    for (double tick = std::ceil(x[0] / x_step) * x_step; tick <= x[1] + 1e-9 * x_step; tick += x_step) {
+    for (const double tick : ticks(x, x_step)) {
         cv::line(plot, at(tick, y[0]), at(tick, y[1]), faint, 1);
         const std::string label = number(tick, x_step);
         const int width = cv::getTextSize(label, font, 0.42, 1, nullptr).width;
         put_text(plot, label, at(tick, y[0]) + cv::Point(-width / 2, 18), 0.42, ink);
     }
-    for (double tick = std::ceil(y[0] / y_step) * y_step; tick <= y[1] + 1e-9 * y_step; tick += y_step) {
+    for (const double tick : ticks(y, y_step)) {
         cv::line(plot, at(x[0], tick), at(x[1], tick), faint, 1);
         const std::string label = number(tick, y_step);
         const int width = cv::getTextSize(label, font, 0.42, 1, nullptr).width;
@@ -82,14 +99,21 @@ cv::Mat colors_of(const cv::Mat &values, cv::Vec2d range)
 
 cv::Mat color_picture(const cv::Mat &values, cv::Vec2d range, const std::string &title)
 {
+    if (range[0] > range[1])
+        range = {0, 1}; // there are no values
+    // Values that are all alike lie in the middle of a range that can be told apart on the bar.
+    if (const double least = 1e-6 * std::max(std::abs(range[0]), 1.0); range[1] - range[0] < least)
+        range += cv::Vec2d(-least, least);
     cv::Mat map = colors_of(values, range), colors;
-    const double extent = std::max(range[1] - range[0], 1e-30);
-    // Small pictures are enlarged so that the text beside them fits.
-    const int factor = std::max(1, 240 / std::max(1, map.rows));
+    const double extent = range[1] - range[0];
+    // Small pictures are enlarged so that the text beside them is not larger than they are.
+    const int factor = std::max(1, cvRound(400.0 / std::max({1, map.rows, map.cols})));
     cv::resize(map, map, cv::Size(), factor, factor, cv::INTER_NEAREST);
     constexpr int margin = 16, bar_width = 18, text_width = 84, title_height = 30;
-    cv::Mat sheet(std::max(map.rows, 120) + title_height + margin, map.cols + 3 * margin + bar_width + text_width,
-                  CV_8UC3, cv::Scalar(244, 244, 244));
+    const int title_width = cv::getTextSize(title, font, 0.45, 1, nullptr).width;
+    const cv::Size size(std::max(map.cols + 3 * margin + bar_width + text_width, title_width + 2 * margin),
+                        std::max(map.rows, 120) + title_height + margin);
+    cv::Mat sheet(size, CV_8UC3, sheet_color);
     map.copyTo(sheet(cv::Rect(margin, title_height, map.cols, map.rows)));
     const cv::Rect bar(2 * margin + map.cols, title_height, bar_width, sheet.rows - title_height - margin);
     cv::Mat ramp(bar.height, 1, CV_8U);
@@ -100,7 +124,7 @@ cv::Mat color_picture(const cv::Mat &values, cv::Vec2d range, const std::string 
     cv::rectangle(sheet, bar, ink, 1);
     put_text(sheet, title, {margin, 20}, 0.45, ink);
     const double step = round_step(extent, 5);
-    for (double value = std::ceil(range[0] / step) * step; value <= range[1] + 1e-9 * extent; value += step) {
+    for (const double value : ticks(range, step)) {
         const int y = bar.y + cvRound((bar.height - 1) * (1 - (value - range[0]) / extent));
         cv::line(sheet, {bar.x + bar.width, y}, {bar.x + bar.width + 5, y}, ink, 1);
         put_text(sheet, number(value, step), {bar.x + bar.width + 10, y + 5}, 0.42, ink);
@@ -116,7 +140,9 @@ void Sheet::add(const std::string &title, const cv::Mat &image)
     const double scale = std::min(panel.width / double(image.cols), panel.height / double(image.rows));
     const cv::Size size(std::max(1, cvRound(image.cols * scale)), std::max(1, cvRound(image.rows * scale)));
     cv::resize(bgr, bgr, size, 0, 0, scale < 1 ? cv::INTER_AREA : scale > 3 ? cv::INTER_NEAREST : cv::INTER_LINEAR);
-    cv::Mat framed(panel, CV_8UC3, dark);
+    // Pictures with a margin of their own go on in it.
+    const bool has_margin = bgr.at<cv::Vec3b>(0, 0) == cv::Vec3b(sheet_gray, sheet_gray, sheet_gray);
+    cv::Mat framed(panel, CV_8UC3, has_margin ? sheet_color : dark);
     bgr.copyTo(framed(cv::Rect((panel.width - size.width) / 2, (panel.height - size.height) / 2, size.width, size.height)));
     panels.emplace_back(title, framed);
 }
@@ -134,7 +160,7 @@ cv::Mat Sheet::draw(const std::vector<Line> &lines) const
     const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
     const int row_height = title_height + panel.height + margin;
     cv::Mat sheet(rows * row_height + margin * 2 + static_cast<int>(lines.size()) * line_height,
-                  columns * (panel.width + margin) + margin, CV_8UC3, cv::Scalar(244, 244, 244));
+                  columns * (panel.width + margin) + margin, CV_8UC3, sheet_color);
     for (int i = 0; i < static_cast<int>(panels.size()); i++) {
         const cv::Point corner(margin + (i % columns) * (panel.width + margin), (i / columns) * row_height + title_height);
         put_text(sheet, panels[i].first, corner + cv::Point(0, -10), 0.6, ink);

@@ -18,6 +18,9 @@ std::string number(double value, double step);
 // 1, 2 or 5 times a power of ten: about `count` steps in the range.
 double round_step(double range, int count);
 
+// The multiples of a step within a range; at most a hundred.
+std::vector<double> ticks(cv::Vec2d range, double step);
+
 // A plot's axes with their ticks.
 struct Axes {
     cv::Rect area;

@@ -32,11 +32,16 @@ void draw_curve(cv::Mat &plot, const Axes &axes, const ofc_solution &solution, i
     }
 }
 
-void mark(cv::Mat &plot, cv::Point at, const std::string &label, bool chosen)
+void mark(cv::Mat &plot, const Axes &axes, double slant_deg, const std::string &label, bool chosen)
 {
+    const cv::Point at = axes.at(slant_deg, slant_deg);
     cv::circle(plot, at, 7, white, cv::FILLED, cv::LINE_AA);
     cv::circle(plot, at, 7, chosen ? red : ink, 2, cv::LINE_AA);
-    put_text(plot, label, at + cv::Point(10, 18), chosen ? 0.7 : 0.45, chosen ? red : ink);
+    // Below and to the right, but above and to the left where that would be on the axis or in the legend.
+    const double scale = chosen ? 0.7 : 0.45;
+    const int width = cv::getTextSize(label, font, scale, 1, nullptr).width;
+    const bool low = at.y > axes.at(0, 12).y, right = at.x > axes.at(90, 0).x - 20 - width;
+    put_text(plot, label, at + cv::Point(right ? -10 - width : 10, low ? -10 : 18), scale, chosen ? red : ink);
 }
 
 // A view of color space, turned so that all three axes show; r, g, b in, pixels out.
@@ -106,13 +111,13 @@ cv::Mat plot_curves(const ofc_solution &s, cv::Size size)
     for (int i = 0; i < s.candidate_count; i++) {
         const double sigma = degrees(s.candidates[i].slant_rad[0]);
         if (i != s.chosen)
-            mark(plot, axes.at(sigma, sigma), std::to_string(s.candidates[i].branch), false);
+            mark(plot, axes, sigma, std::to_string(s.candidates[i].branch), false);
     }
     const double sigma = degrees(s.slant_rad[0]);
     if (s.slant_source == OFC_SLANTS_ROOT || s.slant_source == OFC_SLANTS_JOINT)
-        mark(plot, axes.at(sigma, sigma), "S", true);
+        mark(plot, axes, sigma, "S", true);
     else if (s.slant_source != OFC_SLANTS_NONE)
-        mark(plot, axes.at(sigma, sigma), "no root", true);
+        mark(plot, axes, sigma, "no root", true);
     return plot;
 }
 
@@ -135,7 +140,7 @@ cv::Mat plot_colors(const Picture &picture, const ofc_solution &s, const cv::Mat
     for (int c = 0; c < 3; c++) {
         const cv::Point end = view.at(axes[c]);
         cv::arrowedLine(plot, view.at({0, 0, 0}), end, axis_colors[c], 2, cv::LINE_AA, 0, 0.05);
-        put_text(plot, std::string(1, "rgb"[c]), end + cv::Point(8, -4), 0.6, axis_colors[c]);
+        put_text(plot, std::string(1, "rgb"[c]), end + (c == 1 ? cv::Point(-16, -8) : cv::Point(8, -4)), 0.6, axis_colors[c]);
     }
 
     // Colors in pixel values: a Mat of r, g, b floats whatever the format.

@@ -224,6 +224,8 @@ void print_paper_report(const Result &result)
     const ofc_solution &s = result.solution;
     const auto triple = [](const double *values) { return Triple{values[0], values[1], values[2]}; };
     Table table;
+    if (s.slant_source == OFC_SLANTS_JOINT)
+        table.angles("tilt", "OFC", triple(s.tilts.tilt_rad));
     table.angles("tilt", "Pentland", result.estimates.pentland_tilts);
     table.angles("slant", "OFC", triple(s.slant_rad));
     table.angles("slant", "Pentland", result.estimates.pentland_slants);

@@ -1,6 +1,8 @@
 #include "table1/experiment.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace {
 
@@ -35,17 +37,24 @@ Answer refusal(const std::string &name, ofc_status status)
     return {name, cv::Mat(), std::nullopt, ofc_status_message(status)};
 }
 
-// The orthogonal matrix that turns `from` into `to` best in the least-squares sense (Procrustes), applied.
+// `from` turned by the orthogonal matrix that brings it nearest to `to` in the sum of distances: Procrustes, repeated
+// with weights, because plain least squares is decided by the shadowed pixels that the rejection let through.
 cv::Mat turned_to(const cv::Mat &from, const cv::Mat &to)
 {
-    cv::Matx33d sum = cv::Matx33d::zeros();
-    for (int y = 0; y < from.rows; y++)
-        for (int x = 0; x < from.cols; x++) {
-            const cv::Vec3d n = from.at<cv::Vec3f>(y, x), t = to.at<cv::Vec3f>(y, x);
-            sum += t * n.t(); // zero where either has no normal
-        }
-    const cv::SVD svd(cv::Mat(sum), cv::SVD::FULL_UV);
-    const cv::Mat best = svd.u * svd.vt;
+    cv::Matx33d best = cv::Matx33d::zeros(); // all distances alike: the first round is least squares
+    constexpr int rounds = 20;
+    for (int round = 0; round < rounds; round++) {
+        cv::Matx33d sum = cv::Matx33d::zeros();
+        for (int y = 0; y < from.rows; y++)
+            for (int x = 0; x < from.cols; x++) {
+                const cv::Vec3d n = from.at<cv::Vec3f>(y, x), t = to.at<cv::Vec3f>(y, x);
+                sum += t * n.t() * (1 / std::max(cv::norm(best * n - t), 1e-3)); // zero where either has no normal
+            }
+        cv::Matx33d u, vt;
+        cv::Matx31d values;
+        cv::SVD::compute(sum, values, u, vt);
+        best = u * vt;
+    }
     cv::Mat turned;
     cv::transform(from, turned, best);
     return turned;
@@ -76,6 +85,11 @@ std::vector<cv::Vec2d> along_branch(const ofc_image &image, const ofc_solution &
 
 } // namespace
 
+cv::Vec2d Experiment::least_on_branch() const
+{
+    return *std::min_element(branch.begin(), branch.end(), [](const cv::Vec2d &a, const cv::Vec2d &b) { return a[1] < b[1]; });
+}
+
 Experiment run_experiment(const Relief &relief, double noise, std::uint64_t seed)
 {
     Experiment e;
@@ -99,11 +113,13 @@ Experiment run_experiment(const Relief &relief, double noise, std::uint64_t seed
     const ofc_status with_tilts = solve(image, params, nullptr, given);
     const Estimates estimates = estimates_of(image, s.inliers);
     const auto triple = [](const double *values) { return Triple{values[0], values[1], values[2]}; };
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const Triple nothing = {none, none, none};
     e.table.angles("tilt", "correct", correct.tilts);
     e.table.angles("tilt", "Pentland", triple(s.tilts.tilt_rad));
     e.table.angles("slant", "correct", correct.slants);
     e.table.angles("slant", "OFC", triple(s.slant_rad));
-    e.table.angles("slant", "OFC (correct tilts)", triple(given.slant_rad));
+    e.table.angles("slant", "OFC (correct tilts)", with_tilts == OFC_STATUS_OK ? triple(given.slant_rad) : nothing);
     e.table.angles("slant", "Pentland", estimates.pentland_slants);
     e.table.angles("slant", "Lee-Rosenfeld", estimates.lee_rosenfeld_slants);
     e.table.angles("slant", "Zheng-Chellappa", estimates.zheng_chellappa_slants);

@@ -26,6 +26,10 @@ struct Experiment {
     std::vector<cv::Vec2d> branch;
 
     bool solved() const { return status == OFC_STATUS_OK; }
+
+    // The point of a branch that is not empty where the integral is least. In the paper's Figure 4(b) it is the solution;
+    // but elsewhere on the branch F does not agree with C, so that the integral may as well be smaller there.
+    cv::Vec2d least_on_branch() const;
 };
 
 Experiment run_experiment(const Relief &relief, double noise, std::uint64_t seed);
