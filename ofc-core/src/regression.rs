@@ -143,18 +143,29 @@ impl Moments {
     /// smallest eigenvalue of M^T M relative to K.
     #[must_use]
     pub fn degenerate_noise(&self, fit: &LeastSquares) -> f64 {
-        let noise = self.noise_matrix();
-        let mut power = Matrix6::from(fit.inverse) * noise;
+        let z = Vector6::from(self.least_determined(fit));
+        let spread = z.dot(&(self.noise_matrix() * z));
+        if spread > 0.0 { sqrt(z.dot(&(self.normal_matrix() * z)).max(0.0) / spread) } else { 0.0 }
+    }
+
+    /// The form of that eigenvalue.
+    #[inline(never)]
+    fn least_determined(&self, fit: &LeastSquares) -> [f64; TERMS] {
+        let size = |column: &[f64; TERMS]| column.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+        let noise: [[f64; TERMS]; TERMS] = self.noise_matrix().into();
+        let mut power = [[0.0; TERMS]; TERMS];
+        for (column, noise) in power.iter_mut().zip(&noise) {
+            *column = apply(&fit.inverse, noise, 1.0);
+        }
         for _ in 0..SQUARINGS {
-            power *= power / power.amax().max(f64::MIN_POSITIVE);
+            let factor = power;
+            let largest = power.iter().map(size).fold(f64::MIN_POSITIVE, f64::max);
+            for (column, factors) in power.iter_mut().zip(&factor) {
+                *column = apply(&factor, factors, largest);
+            }
         }
         // Every column is now a multiple of the eigenvector, apart from rounding: the largest one has least of it.
-        let columns: [[f64; TERMS]; TERMS] = power.into();
-        let size = |column: &[f64; TERMS]| column.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
-        let largest = columns.into_iter().max_by(|a, b| size(a).total_cmp(&size(b)));
-        let Some(z) = largest.map(Vector6::from) else { return 0.0 };
-        let spread = z.dot(&(noise * z));
-        if spread > 0.0 { sqrt(z.dot(&(self.normal_matrix() * z)).max(0.0) / spread) } else { 0.0 }
+        power.iter().max_by(|a, b| size(a).total_cmp(&size(b))).copied().unwrap_or_default()
     }
 
     /// The sum of squared residuals about z, from the sums alone: good to the rounding of `count`.
@@ -198,6 +209,19 @@ impl Moments {
         rescale(&mut inverse, &scale);
         Some(inverse)
     }
+}
+
+/// The matrix of these columns times `vector` / `divisor`, in the order of nalgebra's product but without its temporaries.
+#[inline(never)]
+fn apply(columns: &[[f64; TERMS]; TERMS], vector: &[f64; TERMS], divisor: f64) -> [f64; TERMS] {
+    let mut result = [0.0; TERMS];
+    for (column, entry) in columns.iter().zip(vector) {
+        let factor = entry / divisor;
+        for (sum, entry) in result.iter_mut().zip(column) {
+            *sum += entry * factor;
+        }
+    }
+    result
 }
 
 /// Multiplies every entry by the scales of its row and its column.
@@ -249,6 +273,7 @@ fn monomials([r, g, b]: [f64; 3]) -> [f64; TERMS] {
 
 /// The estimates behind a least-squares solution over `count` observations with this residual `variance`, with limits at `confidence` (0.95 for the usual ones).
 #[must_use]
+#[inline(never)]
 pub fn estimates(fit: &LeastSquares, variance: f64, count: u32, confidence: f64) -> [Estimate; TERMS] {
     let degrees = f64::from(count) - TERMS as f64;
     let width = student_t::quantile(confidence, degrees);

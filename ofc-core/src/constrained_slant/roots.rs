@@ -57,7 +57,7 @@ const SINGULAR: f64 = 1e-9;
 /// Empty for input that is not finite or has a cosine beyond 2.
 ///
 /// # Scratch
-/// About 5 kB of stack.
+/// About 6 kB of stack.
 ///
 /// # Reference
 /// Eqs. 24-25; the method is described at the top of the module.
@@ -68,7 +68,7 @@ pub fn roots(tilts: [f64; 3], cosines: [f64; 3]) -> Candidates {
     found
 }
 
-/// [`roots`] with less than 2 kB of stack, into `found`; false, with nothing done, where `room` is shorter than [`ROOM`].
+/// [`roots`] with less than 3 kB of stack, into `found`; false, with nothing done, where `room` is shorter than [`ROOM`].
 ///
 /// # Scratch
 /// [`ROOM`] `f32`; what they hold before does not matter.
@@ -326,7 +326,9 @@ mod tests {
         let mut rng = Rng::new(9);
         for _ in 0..500 {
             let (_, tilts, cosines) = random_case(&mut rng);
-            assert!(search(&Constraints::new(tilts, cosines).unwrap(), &FINE, &mut Candidates::new()));
+            let constraints = Constraints::new(tilts, cosines).unwrap();
+            let mut waiting = heapless::Vec::<Cell, MAX_WAITING>::new();
+            assert!(search(&constraints, &FINE, &mut waiting, &mut Candidates::new()));
         }
         // Three equal lights: any common slant will do.
         let found = roots([1.0; 3], [1.0; 3]);
