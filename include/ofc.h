@@ -1760,6 +1760,8 @@ size_t ofc_stream_size(int32_t width,
 // a cold start are those of a stratified sample of the colors. Where the sample holds all usable pixels, the solution is
 // that of ofc_solve() to the bit, but for the integral of a lone candidate, which is not computed: infinite.
 //
+// Stack, for this call and every other that takes a stream: below 4 KiB.
+//
 // @param width, height  Of the frames.
 // @param format     How samples are stored; their order and planes are each row's own.
 // @param params     See the struct.

@@ -13,7 +13,7 @@ use crate::image::{Census, Image, Usable, for_each_bit};
 use crate::inliers::{Band, Inliers};
 use crate::mat3::symmetric_eigen;
 use crate::pixels::Pixels;
-use crate::regression::{self, Estimate, Moments, TERMS};
+use crate::regression::{self, Estimate, LeastSquares, Moments, TERMS};
 use crate::rng::Rng;
 use crate::select::{kth_smallest, median_rank};
 use libm::{ceil, fabs, fabsf, log, log1p, sqrt};
@@ -211,7 +211,9 @@ pub fn fit(image: &Image, usable: Usable, params: &Params, workspace: &mut [f32]
         }
         Method::LeastSquares => least_squares(image, usable, scale),
     };
-    judge(image, usable, census.usable, scale, scaled, params, workspace)
+    let mut fit = None;
+    judge(image, usable, census.usable, scale, scaled, params, workspace, &mut fit)?;
+    fit.ok_or(FitError::TooFewPixels)
 }
 
 /// The scaled z that `subsets` find among these scaled colors, channels apart; `None` when none determines one. `residuals`
@@ -241,57 +243,89 @@ pub(crate) fn enough(census: &Census, pixels: usize) -> Result<(), FitError> {
 }
 
 /// The scaled z of all usable pixels.
+#[inline(never)]
 pub(crate) fn least_squares(pixels: &impl Pixels, usable: Usable, scale: f64) -> Option<Coefficients> {
     moments(pixels, &Inliers::all(usable), scale).solve().map(|fit| fit.coefficients)
 }
 
 /// The fit that follows from the `scaled` z that was found: rejection and the reweighted fit, over the `count` usable ones
-/// of these pixels.
+/// of these pixels. It is in `out` unless there is an error.
 #[inline(never)]
+#[expect(clippy::too_many_arguments, reason = "what a search leaves, and what it was given")]
 pub(crate) fn judge(
     pixels: &impl Pixels,
     usable: Usable,
-    usable_count: usize,
+    count: usize,
     scale: f64,
     scaled: Option<Coefficients>,
     params: &Params,
     workspace: &mut [f32],
-) -> Result<Fit, FitError> {
-    let degenerate = || FitError::RankDeficient {
-        color_deviations: deviations(&moments(pixels, &Inliers::all(usable), scale), scale),
-    };
+    out: &mut Option<Fit>,
+) -> Result<(), FitError> {
+    let degenerate = || degenerate(pixels, usable, scale);
     let robust = scaled.ok_or_else(degenerate)?.map(|c| c * scale * scale);
+    let rejection =
+        Rejection::new(robust, count, median_residual(pixels, usable, &robust, workspace), params);
+    let inliers = Inliers { residual: rejection.band, ..Inliers::all(usable) };
+    let refit = reweighted(pixels, &inliers, scale, params.limits_confidence);
+    rejection.finish(refit.as_ref().ok_or_else(degenerate)?, count, params, out);
+    Ok(())
+}
 
-    let residuals = pixels.gather(Inliers::all(usable).selector(), workspace, |r, g, b| {
-        fabs(quadratic_form(&robust, r, g, b) - 1.0)
-    });
-    let median_residual = kth_smallest(residuals, median_rank(residuals.len())).map_or(0.0, f64::from);
-    let count = usable_count as f64;
-    let dispersion = CONSISTENCY * (1.0 + 5.0 / (count - TERMS as f64)) * median_residual;
-    let (band, subsets) = match params.method {
-        Method::LeastMedian => {
-            (Band::residual(robust, dispersion, params.rejection), params.subset_count().unwrap_or(0))
-        }
-        Method::LeastSquares => (Band { form: robust, ..Band::EVERYTHING }, 0),
-    };
+/// What follows from the robust z alone.
+struct Rejection {
+    median_residual: f64,
+    dispersion: f64,
+    band: Band,
+}
 
-    let inliers = Inliers { residual: band, ..Inliers::all(usable) };
-    let refit = reweighted(pixels, &inliers, scale, params.limits_confidence).ok_or_else(degenerate)?;
-    Ok(Fit {
-        robust,
-        median_residual,
-        dispersion,
-        r_squared: 1.0 - median_residual * median_residual,
-        band,
-        coefficients: refit.coefficients,
-        residual_deviation: refit.residual_deviation,
-        color_deviations: refit.color_deviations,
-        noise_deviation: refit.noise_deviation,
-        degenerate_noise_deviation: refit.degenerate_noise_deviation,
-        usable: usable_count,
-        inliers: refit.count as usize,
-        subsets,
-    })
+impl Rejection {
+    fn new(robust: Coefficients, count: usize, median_residual: f64, params: &Params) -> Self {
+        let dispersion = CONSISTENCY * (1.0 + 5.0 / (count as f64 - TERMS as f64)) * median_residual;
+        let band = match params.method {
+            Method::LeastMedian => Band::residual(robust, dispersion, params.rejection),
+            Method::LeastSquares => Band { form: robust, ..Band::EVERYTHING },
+        };
+        Self { median_residual, dispersion, band }
+    }
+
+    /// The whole fit, where it is wanted.
+    #[inline(never)]
+    fn finish(&self, refit: &Refit, count: usize, params: &Params, out: &mut Option<Fit>) {
+        *out = Some(Fit {
+            robust: self.band.form,
+            median_residual: self.median_residual,
+            dispersion: self.dispersion,
+            r_squared: 1.0 - self.median_residual * self.median_residual,
+            band: self.band,
+            coefficients: refit.coefficients,
+            residual_deviation: refit.residual_deviation,
+            color_deviations: refit.color_deviations,
+            noise_deviation: refit.noise_deviation,
+            degenerate_noise_deviation: refit.degenerate_noise_deviation,
+            usable: count,
+            inliers: refit.count as usize,
+            subsets: match params.method {
+                Method::LeastMedian => params.subset_count().unwrap_or(0),
+                Method::LeastSquares => 0,
+            },
+        });
+    }
+}
+
+/// The error where the usable pixels determine no z.
+#[inline(never)]
+fn degenerate(pixels: &impl Pixels, usable: Usable, scale: f64) -> FitError {
+    let moments = moments(pixels, &Inliers::all(usable), scale);
+    FitError::RankDeficient { color_deviations: deviations(&moments, scale) }
+}
+
+/// The median absolute residual of the usable pixels.
+#[inline(never)]
+fn median_residual(pixels: &impl Pixels, usable: Usable, z: &Coefficients, workspace: &mut [f32]) -> f64 {
+    let residuals = pixels
+        .gather(Inliers::all(usable).selector(), workspace, |r, g, b| fabs(quadratic_form(z, r, g, b) - 1.0));
+    kth_smallest(residuals, median_rank(residuals.len())).map_or(0.0, f64::from)
 }
 
 /// The sums over the inliers' scaled colors.
@@ -330,6 +364,7 @@ fn smallest_step(pixels: &impl Pixels, inliers: &Inliers) -> f64 {
     if smallest.is_finite() { f64::from(smallest) } else { 0.0 }
 }
 
+#[inline(never)]
 fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
     symmetric_eigen(&moments.second_moments()).values.map(|square| sqrt(square.max(0.0)) / scale)
 }
@@ -350,35 +385,35 @@ impl Refit {
         self.coefficients.map(|estimate| estimate.value)
     }
 
-    /// From the sums of colors times `scale`; `residual_sum` gives the sum of squares about the z of pixel values, and that
-    /// of scaled colors.
+    /// From the sums of colors times `scale`, their least squares, and the sum of squares of its residuals. Noise is at least
+    /// `rounding`.
     pub fn new(
         moments: &Moments,
+        fit: &LeastSquares,
         scale: f64,
         confidence: f64,
-        residual_sum: impl FnOnce(&Coefficients, &Coefficients) -> f64,
+        residual_sum: f64,
+        rounding: f64,
     ) -> Option<Self> {
         if (moments.count as usize) < MIN_PIXELS {
             return None;
         }
-        let fit = moments.solve()?;
-        let to_pixel_values = scale * scale;
-        let residual_sum = residual_sum(&fit.coefficients.map(|c| c * to_pixel_values), &fit.coefficients);
         let variance = residual_sum / (f64::from(moments.count) - TERMS as f64);
-        let coefficients =
-            regression::estimates(&fit, variance, moments.count, confidence).map(|e| Estimate {
-                value: e.value * to_pixel_values,
-                standard_error: e.standard_error * to_pixel_values,
-                low: e.low * to_pixel_values,
-                high: e.high * to_pixel_values,
-                ..e
-            });
+        let noise = moments.noise(&fit.coefficients, residual_sum) / scale;
+        let degenerate_noise_deviation = moments.degenerate_noise(fit) / scale;
+        let color_deviations = deviations(moments, scale);
+        let mut coefficients = regression::estimates(fit, variance, moments.count, confidence);
+        for e in &mut coefficients {
+            for value in [&mut e.value, &mut e.standard_error, &mut e.low, &mut e.high] {
+                *value *= scale * scale;
+            }
+        }
         Some(Self {
             coefficients,
             residual_deviation: sqrt(variance),
-            noise_deviation: moments.noise(&fit.coefficients, residual_sum) / scale,
-            degenerate_noise_deviation: moments.degenerate_noise(&fit) / scale,
-            color_deviations: deviations(moments, scale),
+            noise_deviation: noise.max(rounding),
+            degenerate_noise_deviation,
+            color_deviations,
             count: moments.count,
         })
     }
@@ -388,22 +423,27 @@ impl Refit {
 #[inline(never)]
 fn reweighted(pixels: &impl Pixels, inliers: &Inliers, scale: f64, confidence: f64) -> Option<Refit> {
     let moments = moments(pixels, inliers, scale);
-    let mut refit = Refit::new(&moments, scale, confidence, |z, _| {
-        let mut residual_sum = 0.0;
-        pixels.for_each_window(|window| {
-            let mut sum = 0.0;
-            for_each_bit(inliers.bits(window), |i| {
-                let [r, g, b] = window.pixel(i);
-                let residual = quadratic_form(z, r, g, b) - 1.0;
-                sum += residual * residual;
-            });
-            residual_sum += sum;
-        });
-        residual_sum
-    })?;
+    let fit = moments.solve();
+    let fit = fit.as_ref()?;
+    let residual_sum = residual_sum(pixels, inliers, &fit.coefficients.map(|c| c * (scale * scale)));
     let rounding = smallest_step(pixels, inliers) * ROUNDING;
-    refit.noise_deviation = refit.noise_deviation.max(rounding);
-    Some(refit)
+    Refit::new(&moments, fit, scale, confidence, residual_sum, rounding)
+}
+
+/// The sum of the squared residuals of the inliers.
+#[inline(never)]
+fn residual_sum(pixels: &impl Pixels, inliers: &Inliers, z: &Coefficients) -> f64 {
+    let mut residual_sum = 0.0;
+    pixels.for_each_window(|window| {
+        let mut sum = 0.0;
+        for_each_bit(inliers.bits(window), |i| {
+            let [r, g, b] = window.pixel(i);
+            let residual = quadratic_form(z, r, g, b) - 1.0;
+            sum += residual * residual;
+        });
+        residual_sum += sum;
+    });
+    residual_sum
 }
 
 /// 2^-k for the k that brings `largest` into [1, 2).

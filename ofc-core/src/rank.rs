@@ -72,7 +72,7 @@ impl Rank {
 /// Pixel values.
 ///
 /// # Scratch
-/// None but about 8 KiB of stack; up to four passes over the picture.
+/// None but about 3 KiB of stack; up to four passes over the picture.
 // The windows of its passes need not lie on the stack at once, nor on that of the whole pipeline.
 #[inline(never)]
 pub fn rank(

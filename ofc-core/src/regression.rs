@@ -113,19 +113,30 @@ impl Moments {
     /// smallest eigenvalue of M^T M relative to K.
     #[must_use]
     pub fn degenerate_noise(&self, fit: &LeastSquares) -> f64 {
-        let noise = self.noise_matrix();
-        let mut power = mat6::multiply(&fit.inverse, &noise);
-        for _ in 0..SQUARINGS {
-            let largest = mat6::max_abs(&power).max(f64::MIN_POSITIVE);
-            let scaled = power.map(|column| column.map(|entry| entry / largest));
-            power = mat6::multiply(&power, &scaled);
-        }
-        // Every column is now a multiple of the eigenvector, apart from rounding: the largest one has least of it.
-        let size = |column: &[f64; TERMS]| column.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
-        let Some(z) = power.into_iter().max_by(|a, b| size(a).total_cmp(&size(b))) else { return 0.0 };
-        let spread = mat6::dot(&z, &mat6::apply(&noise, &z));
+        let z = self.least_determined(fit);
+        let spread = mat6::dot(&z, &mat6::apply(&self.noise_matrix(), &z));
         let explained = mat6::dot(&z, &mat6::apply(&self.normal_matrix(), &z));
         if spread > 0.0 { sqrt(explained.max(0.0) / spread) } else { 0.0 }
+    }
+
+    /// The form of that eigenvalue.
+    #[inline(never)]
+    fn least_determined(&self, fit: &LeastSquares) -> [f64; TERMS] {
+        let size = |column: &[f64; TERMS]| column.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+        let noise = self.noise_matrix();
+        let mut power = [[0.0; TERMS]; TERMS];
+        for (column, noise) in power.iter_mut().zip(&noise) {
+            *column = apply(&fit.inverse, noise, 1.0);
+        }
+        for _ in 0..SQUARINGS {
+            let factor = power;
+            let largest = power.iter().map(size).fold(f64::MIN_POSITIVE, f64::max);
+            for (column, factors) in power.iter_mut().zip(&factor) {
+                *column = apply(&factor, factors, largest);
+            }
+        }
+        // Every column is now a multiple of the eigenvector, apart from rounding: the largest one has least of it.
+        power.iter().max_by(|a, b| size(a).total_cmp(&size(b))).copied().unwrap_or_default()
     }
 
     /// The sum of squared residuals about z, from the sums alone: good to the rounding of `count`.
@@ -168,6 +179,19 @@ impl Moments {
     }
 }
 
+/// The matrix of these columns times `vector` / `divisor`, without temporaries.
+#[inline(never)]
+fn apply(columns: &[[f64; TERMS]; TERMS], vector: &[f64; TERMS], divisor: f64) -> [f64; TERMS] {
+    let mut result = [0.0; TERMS];
+    for (column, entry) in columns.iter().zip(vector) {
+        let factor = entry / divisor;
+        for (sum, entry) in result.iter_mut().zip(column) {
+            *sum += entry * factor;
+        }
+    }
+    result
+}
+
 /// A squared pivot below this share of its diagonal entry is rounding: colors of eight bits with an exact linear
 /// dependence leave 1e-16, the weakest real scenes 1e-9.
 const SMALLEST_PIVOT: f64 = 1e-13;
@@ -208,6 +232,7 @@ fn monomials([r, g, b]: [f64; 3]) -> [f64; TERMS] {
 
 /// The estimates behind a least-squares solution over `count` observations with this residual `variance`, with limits at `confidence` (0.95 for the usual ones).
 #[must_use]
+#[inline(never)]
 pub fn estimates(fit: &LeastSquares, variance: f64, count: u32, confidence: f64) -> [Estimate; TERMS] {
     let degrees = f64::from(count) - TERMS as f64;
     let width = student_t::quantile(confidence, degrees);

@@ -243,6 +243,17 @@ fn oriented(joint: &Joint, ellipsoid: &Ellipsoid, rank_threshold: f64) -> (Tilts
 }
 
 impl Solution {
+    /// As [`Self::unsolved`], in place.
+    pub(crate) fn restart(&mut self, census: Census) {
+        self.outcome = Outcome::RankDeficient;
+        self.census = census;
+        self.color_deviations = [0.0; 3];
+        self.inliers = Inliers::none(self.inliers.usable);
+        self.inlier_count = 0;
+        (self.rank, self.fit, self.norm_location) = (None, None, None);
+        (self.ellipsoid, self.tilts, self.joint, self.choice) = (None, None, None, None);
+    }
+
     /// What is known before the fit.
     pub(crate) fn unsolved(census: Census, usable: Usable) -> Self {
         Self {
@@ -340,7 +351,8 @@ fn choose(
 ) -> Option<Choice> {
     let orient = |slants| orient(ellipsoid, slants, tilts, params);
     let selector = inliers.selector();
-    let mut choice = Choice::among(&constrained_slant::roots(tilts, ellipsoid.cosines));
+    let mut choice = Choice::none();
+    choice.set_candidates(&constrained_slant::roots(tilts, ellipsoid.cosines));
     for candidate in &mut choice.candidates {
         let orientation = orient(candidate.slants);
         if orientation.rank == 3 {
@@ -364,19 +376,23 @@ fn choose(
 }
 
 impl Choice {
-    /// No choice yet among these roots of eqs. 25, whose integrals are not known.
-    pub(crate) fn among(roots: &Candidates) -> Self {
-        let mut candidates = Vec::new();
-        for &SlantRoot { slants, branch, residual } in roots {
-            // There are no more roots than candidates have room.
-            let _ = candidates.push(Candidate { slants, branch, residual, integral: f64::INFINITY });
-        }
+    /// No choice yet.
+    pub(crate) const fn none() -> Self {
         Self {
             slants: [0.0; 3],
             source: SlantSource::Root,
-            candidates,
+            candidates: Vec::new(),
             chosen: 0,
             orientation: Orientation::NONE,
+        }
+    }
+
+    /// Takes these roots of eqs. 25 for candidates, their integrals not known yet.
+    pub(crate) fn set_candidates(&mut self, roots: &Candidates) {
+        self.candidates.clear();
+        for &SlantRoot { slants, branch, residual } in roots {
+            // There are no more roots than candidates have room.
+            let _ = self.candidates.push(Candidate { slants, branch, residual, integral: f64::INFINITY });
         }
     }
 

@@ -178,6 +178,7 @@ impl State {
 
     /// As [`Self::new`] for what [`Self::check_size`] has seen: made where it is put, without a copy on the stack.
     #[must_use]
+    #[expect(clippy::inline_always, reason = "three kilobytes that should not be moved")]
     #[inline(always)]
     pub fn unchecked(width: usize, height: usize, format: Sample, params: Params) -> Self {
         let usable = Usable { saturation: params.solve.saturation.unwrap_or(format.saturation()) };

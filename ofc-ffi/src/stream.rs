@@ -198,6 +198,8 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 /// a cold start are those of a stratified sample of the colors. Where the sample holds all usable pixels, the solution is
 /// that of ofc_solve() to the bit, but for the integral of a lone candidate, which is not computed: infinite.
 ///
+/// Stack, for this call and every other that takes a stream: below 4 KiB.
+///
 /// @param width, height  Of the frames.
 /// @param format     How samples are stored; their order and planes are each row's own.
 /// @param params     See the struct.
@@ -236,10 +238,9 @@ pub unsafe extern "C" fn ofc_stream_init(
         let words = words((width as u64) << 32 | height as u64, u64::from(sample_size));
         // SAFETY: aligned, long enough, and apart from everything else.
         unsafe {
-            memory
-                .cast::<Head>()
-                .write(Head { words, state: State::unchecked(width, height, sample, params) })
-        };
+            let head = memory.cast::<Head>();
+            head.write(Head { words, state: State::unchecked(width, height, sample, params) });
+        }
         out.write(memory.cast());
         Ok(OFC_STATUS_OK)
     };

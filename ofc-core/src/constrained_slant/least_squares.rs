@@ -51,7 +51,7 @@ const SMALLEST_DAMPING: f64 = 1e-12;
 /// For input that is not finite or has a cosine beyond 2: slants zero, residuals infinite.
 ///
 /// # Scratch
-/// About 5 kB of stack.
+/// About 7 kB of stack.
 ///
 /// # Reference
 /// Section 3.3: if there are no solutions, "fall back".
@@ -65,7 +65,7 @@ pub fn least_squares(tilts: [f64; 3], cosines: [f64; 3]) -> NearestSlants {
     without_roots(tilts, cosines)
 }
 
-/// [`least_squares()`] of equations that have no root, with less than 2 kB of stack.
+/// [`least_squares()`] of equations that have no root, with less than 3 kB of stack.
 #[must_use]
 #[inline(never)]
 pub fn without_roots(tilts: [f64; 3], cosines: [f64; 3]) -> NearestSlants {

@@ -57,7 +57,7 @@ const SINGULAR: f64 = 1e-9;
 /// Empty for input that is not finite or has a cosine beyond 2.
 ///
 /// # Scratch
-/// About 5 kB of stack.
+/// About 6 kB of stack.
 ///
 /// # Reference
 /// Eqs. 24-25; the method is described at the top of the module.
@@ -68,7 +68,7 @@ pub fn roots(tilts: [f64; 3], cosines: [f64; 3]) -> Candidates {
     found
 }
 
-/// [`roots`] with less than 2 kB of stack, into `found`; false, with nothing done, where `room` is shorter than [`ROOM`].
+/// [`roots`] with less than 3 kB of stack, into `found`; false, with nothing done, where `room` is shorter than [`ROOM`].
 ///
 /// # Scratch
 /// [`ROOM`] `f32`; what they hold before does not matter.

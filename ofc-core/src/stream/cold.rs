@@ -8,10 +8,10 @@ use crate::ellipsoid::Coefficients;
 use crate::image::{Census, Image, WINDOW, Window, for_each_bit};
 use crate::inliers::Inliers;
 use crate::integrability;
-use crate::lmeds::{self, Method};
+use crate::lmeds::{self, FitError, Method};
 use crate::pixels::second_differences;
 use crate::rng::Rng;
-use crate::solve::{Choice, Outcome, SlantFallback, SlantSource, Solution, orient};
+use crate::solve::{Choice, Outcome, SlantFallback, SlantSource, orient};
 use crate::tilt::{TiltEstimator, Tilts, pentland};
 
 impl State {
@@ -45,25 +45,37 @@ impl State {
 
     #[inline(never)]
     pub(super) fn end_colors(&mut self, memory: &mut Memory) -> Result<(), StreamError> {
-        self.solution = Solution::unsolved(self.census, self.usable());
+        self.solution.restart(self.census);
         self.concluded = false;
         lmeds::enough(&self.census, self.width * self.height).map_err(StreamError::Fit)?;
         self.scale = lmeds::reciprocal_power_of_two(self.census.largest);
         self.drift = None;
         let found = self.search(memory);
-        let params = self.params.solve;
-        let (pixels, workspace) = self.sampled(memory).ok_or(StreamError::TooShort)?;
-        let usable = self.usable();
-        let scaled = match params.lmeds.method {
+        let fit = self.fit(found, memory);
+        self.model(fit, memory).map_err(StreamError::Fit)?;
+        self.go_on(self.solution.outcome == Outcome::NoTilt, Pass::Tilts);
+        Ok(())
+    }
+
+    /// The fit to the sample, from the z that was found in it.
+    #[inline(never)]
+    fn fit(&mut self, found: Option<Coefficients>, memory: &mut Memory) -> Result<(), FitError> {
+        let (pixels, workspace) = self.sampled(memory).ok_or(FitError::WorkspaceTooShort)?;
+        let params = &self.params.solve.lmeds;
+        let (usable, count) = (self.usable(), self.strata.len());
+        let scaled = match params.method {
             Method::LeastMedian => found,
             Method::LeastSquares => lmeds::least_squares(&pixels, usable, self.scale),
         };
-        let count = self.strata.len();
-        let fit = lmeds::judge(&pixels, usable, count, self.scale, scaled, &params.lmeds, workspace);
-        let fit = fit.map(|fit| self.solution.fit = Some(fit));
-        self.solution.model(&pixels, fit, &params, workspace).map_err(StreamError::Fit)?;
-        self.go_on(self.solution.outcome == Outcome::NoTilt, Pass::Tilts);
-        Ok(())
+        let fit = &mut self.solution.fit;
+        lmeds::judge(&pixels, usable, count, self.scale, scaled, params, workspace, fit)
+    }
+
+    /// What follows from the fit.
+    #[inline(never)]
+    fn model(&mut self, fit: Result<(), FitError>, memory: &mut Memory) -> Result<(), FitError> {
+        let (pixels, workspace) = self.sampled(memory).ok_or(FitError::WorkspaceTooShort)?;
+        self.solution.model(&pixels, fit, &self.params.solve, workspace)
     }
 
     /// The sample as pixels, and the room behind it.
@@ -154,26 +166,47 @@ impl State {
         };
         let mut roots = Candidates::new();
         constrained_slant::roots_within(tilts, ellipsoid.cosines, memory.values, &mut roots);
-        let params = &self.params.solve;
-        let Some((slants, source)) = slants_of(roots.first(), tilts, ellipsoid.cosines, params.fallback)
-        else {
-            self.solution.conclude();
-            return false;
-        };
-        let several = roots.len() > 1;
-        if several {
-            for (inverse, root) in self.candidates.iter_mut().zip(&roots) {
-                let orientation = orient(ellipsoid, root.slants, tilts, params);
+        let fallback = self.params.solve.fallback;
+        if let Some((slants, source)) = slants_of(roots.first(), tilts, ellipsoid.cosines, fallback) {
+            self.solution.choice = None;
+            self.adopt_candidates(&roots, slants, source);
+        }
+        if roots.len() > 1 {
+            self.orient_candidates(&roots);
+            return true;
+        }
+        self.solution.conclude();
+        false
+    }
+
+    /// Chooses these slants, of all roots the first one's if there is one.
+    #[inline(never)]
+    fn adopt_candidates(&mut self, roots: &Candidates, slants: [f64; 3], source: SlantSource) {
+        let choice = self.solution.choice.get_or_insert_with(Choice::none);
+        choice.set_candidates(roots);
+        (choice.slants, choice.source) = (slants, source);
+        self.orient();
+    }
+
+    /// F of the slants that were chosen.
+    fn orient(&mut self) {
+        if let (Some(choice), Some(Tilts { tilts, .. }), Some(ellipsoid)) =
+            (&mut self.solution.choice, self.solution.tilts, &self.solution.ellipsoid)
+        {
+            choice.orientation = orient(ellipsoid, choice.slants, tilts, &self.params.solve);
+        }
+    }
+
+    /// F^-1 of every candidate.
+    #[inline(never)]
+    fn orient_candidates(&mut self, roots: &Candidates) {
+        if let (Some(Tilts { tilts, .. }), Some(ellipsoid)) = (self.solution.tilts, &self.solution.ellipsoid)
+        {
+            for (inverse, root) in self.candidates.iter_mut().zip(roots) {
+                let orientation = orient(ellipsoid, root.slants, tilts, &self.params.solve);
                 *inverse = (orientation.rank == 3).then_some(orientation.f_inverse);
             }
         }
-        let choice = self.solution.choice.insert(Choice::among(&roots));
-        (choice.slants, choice.source) = (slants, source);
-        if !several {
-            choice.orientation = orient(ellipsoid, slants, tilts, params);
-            self.solution.conclude();
-        }
-        several
     }
 
     pub(super) fn begin_slants(&mut self) {
@@ -197,19 +230,17 @@ impl State {
 
     #[inline(never)]
     pub(super) fn end_slants(&mut self) {
-        if let (Some(choice), Some(Tilts { tilts, .. }), Some(ellipsoid)) =
-            (&mut self.solution.choice, self.solution.tilts, &self.solution.ellipsoid)
-        {
+        if let Some(choice) = &mut self.solution.choice {
             let sums = self.candidates.iter().zip(&self.integrals);
             for (candidate, (inverse, integral)) in choice.candidates.iter_mut().zip(sums) {
-                let mean = inverse.and_then(|_| integral.mean());
+                let mean = if inverse.is_some() { integral.mean() } else { None };
                 candidate.integral = mean.map_or(f64::INFINITY, |integral| integral.mean);
             }
             if let Some((chosen, slants)) = choice.most_integrable() {
                 (choice.chosen, choice.slants) = (chosen, slants);
             }
-            choice.orientation = orient(ellipsoid, choice.slants, tilts, &self.params.solve);
         }
+        self.orient();
         self.solution.conclude();
         self.go_on(false, Pass::Colors);
     }
@@ -258,7 +289,7 @@ fn kept(x: usize, width: usize, memory: &Memory, window: &mut Window) {
     window.x = x;
     window.len = width.saturating_sub(x).min(WINDOW);
     window.masked = if window.len == WINDOW { u64::MAX } else { (1 << window.len) - 1 };
-    for (channel, out) in memory.values.chunks_exact(width).zip(&mut window.color) {
+    for (channel, out) in memory.values.chunks_exact(width.max(1)).zip(&mut window.color) {
         for (out, &value) in out.iter_mut().zip(channel.get(x..).unwrap_or_default()) {
             *out = value;
         }

@@ -13,8 +13,8 @@ use crate::inliers::{Band, Inliers};
 use crate::lmeds::{MIN_PIXELS, Refit};
 use crate::mat3::{self, Mat3};
 use crate::regression::Moments;
-use crate::solve::{Choice, SMALLEST_NOISE_MARGIN, orient};
-use crate::tilt::pentland;
+use crate::solve::{SMALLEST_NOISE_MARGIN, orient};
+use crate::tilt::{Tilts, pentland};
 use libm::{atan2, sqrt};
 
 /// What a frame says of the model from before it.
@@ -81,34 +81,55 @@ impl State {
     }
 
     /// The new model; `None`, with the old one kept, where there is none.
-    #[inline(never)]
     fn refine(&mut self, room: &mut [f32]) -> Option<Change> {
         let form = self.refined_form()?;
-        let ellipsoid = ellipsoid::decompose(&form).ok()?;
+        let (angles, strengths) = self.adopt_orientation(&form, room)?;
+        let dispersion = self.adopt_fit()?;
+        Some(Change { angles, strengths, dispersion })
+    }
+
+    /// Takes over what follows from C and the tilts, and says by how much the rows of F turned and grew.
+    #[inline(never)]
+    fn adopt_orientation(&mut self, form: &Coefficients, room: &mut [f32]) -> Option<([f64; 3], [f64; 3])> {
         let tilts = self.tilts()?;
+        let cosines = cosines(form)?;
         let mut roots = Candidates::new();
-        constrained_slant::roots_within(tilts.tilts, ellipsoid.cosines, room, &mut roots);
-        let params = &self.params.solve;
+        constrained_slant::roots_within(tilts.tilts, cosines, room, &mut roots);
         let chosen = nearest(&roots, self.solution.choice.as_ref()?.slants);
-        let root = roots.get(chosen);
-        let (slants, source) = slants_of(root, tilts.tilts, ellipsoid.cosines, params.fallback)?;
-        let orientation = orient(&ellipsoid, slants, tilts.tilts, params);
+        let fallback = self.params.solve.fallback;
+        let (slants, source) = slants_of(roots.get(chosen), tilts.tilts, cosines, fallback)?;
+        let change = self.adopt_slants(form, &tilts, slants)?;
+        let choice = self.solution.choice.as_mut()?;
+        choice.set_candidates(&roots);
+        (choice.source, choice.chosen) = (source, chosen);
+        Some(change)
+    }
+
+    /// The same of the slants; `None`, with nothing done, where F is rank-deficient.
+    #[inline(never)]
+    fn adopt_slants(
+        &mut self,
+        form: &Coefficients,
+        tilts: &Tilts,
+        slants: [f64; 3],
+    ) -> Option<([f64; 3], [f64; 3])> {
+        let ellipsoid = ellipsoid::decompose(form).ok()?;
+        let orientation = orient(&ellipsoid, slants, tilts.tilts, &self.params.solve);
+        let choice = self.solution.choice.as_mut()?;
         if orientation.rank < 3 {
             return None;
         }
-        let old = self.orientation()?.f;
-        let dispersion = self.adopt_fit()?;
-        let choice = self.solution.choice.insert(Choice::among(&roots));
-        (choice.slants, choice.source, choice.chosen) = (slants, source, chosen);
-        choice.orientation = orientation;
-        self.solution.ellipsoid = Some(ellipsoid);
-        self.solution.tilts = Some(tilts);
-        Some(change(&old, &orientation.f, dispersion))
+        let change = change(&choice.orientation.f, &orientation.f);
+        (choice.slants, choice.orientation) = (slants, orientation);
+        (self.solution.ellipsoid, self.solution.tilts) = (Some(ellipsoid), Some(*tilts));
+        Some(change)
     }
 
     fn refit(&self) -> Option<Refit> {
-        let confidence = self.params.solve.lmeds.limits_confidence;
-        Refit::new(&self.moments, self.scale, confidence, |_, z| self.moments.residual_sum(z))
+        let fit = self.moments.solve();
+        let fit = fit.as_ref()?;
+        let sum = self.moments.residual_sum(&fit.coefficients);
+        Refit::new(&self.moments, fit, self.scale, self.params.solve.lmeds.limits_confidence, sum, 0.0)
     }
 
     /// C of the sums; `None` where they do not determine it.
@@ -156,6 +177,13 @@ impl State {
     }
 }
 
+/// The cosines of the angles between the rows of F; `None` where C is not positive definite.
+// Three numbers of the forty, kept through the search for slants.
+#[inline(never)]
+fn cosines(form: &Coefficients) -> Option<[f64; 3]> {
+    ellipsoid::decompose(form).ok().map(|ellipsoid| ellipsoid.cosines)
+}
+
 /// Which root's slants are nearest to these; 0 without any.
 fn nearest(roots: &Candidates, slants: [f64; 3]) -> usize {
     let distance =
@@ -164,12 +192,14 @@ fn nearest(roots: &Candidates, slants: [f64; 3]) -> usize {
     roots.min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b))).map_or(0, |(chosen, _)| chosen)
 }
 
-fn change(old: &Mat3, new: &Mat3, dispersion: f64) -> Change {
+/// The angles between the rows of two F, and their lengths over each other.
+#[inline(never)]
+fn change(old: &Mat3, new: &Mat3) -> ([f64; 3], [f64; 3]) {
     let (mut angles, mut strengths) = ([0.0; 3], [0.0; 3]);
     for ((angle, strength), (&old, &new)) in angles.iter_mut().zip(&mut strengths).zip(old.iter().zip(new)) {
         let cross = mat3::cross(old, new);
         *angle = atan2(sqrt(mat3::dot(cross, cross)), mat3::dot(old, new));
         *strength = sqrt(mat3::dot(new, new) / mat3::dot(old, old).max(f64::MIN_POSITIVE));
     }
-    Change { angles, strengths, dispersion }
+    (angles, strengths)
 }
