@@ -79,6 +79,14 @@ build_archive() {
     archive=$folder/$triple/firmware/libofc.a
 }
 
+# cannot_panic PROGRAM: ends the script if the program for the board that was set last holds panic machinery.
+cannot_panic() {
+    if "$tools-nm" -C "$1" | grep -E 'panic|core::fmt|unwrap_failed|expect_failed|_fail|_Unwind_|eh_personality|unwind'; then
+        echo "$1 holds panic machinery" >&2
+        exit 1
+    fi
+}
+
 # emulate PROGRAM OPTION...: runs it on the emulator of the board that was set last; its output and status. A program that
 # hangs ends with status 124.
 emulate() {

@@ -68,6 +68,7 @@ for name in cortex-m4f cortex-m7 riscv32; do
     board "$name"
     build_archive "$name" "$triple" "$flags"
     "${compiler[@]}" -O2 "${portable[@]}" "${start[@]}" "${before[@]}" "$archive" -lgcc -o "$out/$name"
+    cannot_panic "$out/$name"
     compare "$name" emulate "$out/$name"
 done
 
