@@ -1805,7 +1805,7 @@ ofc_status ofc_stream_row(struct ofc_stream *stream,
 // Ends the frame.
 //
 // @param stream  The stream.
-// @param pass    Output: what the next frame is for, one of OFC_PASS_*; may be NULL. Written unless an argument is invalid.
+// @param pass    Output: what the next frame is for, one of OFC_PASS_*; may be NULL.
 // @return OFC_STATUS_OK: the next pass follows from this one. OFC_STATUS_COLD_START_NEEDED: the frame does not fit the
 //         model, as ofc_stream_drift_get() says; the next pass is over colors. A cold start that comes to no F ends with
 //         OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_NO_TILT or

@@ -12,47 +12,50 @@
 
 #define DEGREES 57.2957795f
 
-/* A camera writes here: not counted among the program's own memory. */
-__attribute__((section(".frame"))) static uint8_t frame[HEIGHT][WIDTH][3];
-
-enum { SAMPLE = 2000 };
-static uint64_t workspace[OFC_SOLVE_WORKSPACE_SIZE_FOR(WIDTH, HEIGHT, SAMPLE) / sizeof(uint64_t)];
+/* All the memory there is: a row of the camera, one of normals, and the stream's. */
+static uint8_t row[WIDTH][3];
+static float normals[WIDTH][3];
+static uint64_t memory[OFC_STREAM_SIZE(WIDTH, HEIGHT) / sizeof(uint64_t)];
+static ofc_stream *stream;
 static ofc_solution solution;
 
-static void camera(int number)
+static ofc_image camera(int number, int y)
 {
-    for (int y = 0; y < HEIGHT; y++)
-        scene_row(number, y, frame[y][0]);
-}
-
-static ofc_image rows(int first, int count)
-{
-    const ofc_image image = {.pixels = frame[first],
-                             .width = WIDTH,
-                             .height = count,
-                             .row_stride_bytes = sizeof frame[0],
-                             .format = OFC_PIXEL_RGB8};
+    scene_row(number, y, row[0]);
+    const ofc_image image = {
+        .pixels = row, .width = WIDTH, .height = 1, .row_stride_bytes = sizeof row, .format = OFC_PIXEL_RGB8};
     return image;
 }
 
-static ofc_status cold(void)
+/* One frame through the stream; the instructions that ofc takes for it, without the camera's, are added. */
+static ofc_status pass(int number, ofc_stream_pass *next, uint64_t *instructions)
 {
-    const ofc_image image = rows(0, HEIGHT);
-    ofc_solve_params params;
-    ofc_solve_params_default(&params);
-    params.lmeds.sample_size = SAMPLE;
-    return ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &solution);
+    uint64_t start = board_instructions();
+    ofc_status status = ofc_stream_begin(stream, NULL);
+    *instructions += board_instructions() - start;
+    for (int y = 0; y < HEIGHT && status == OFC_STATUS_OK; y++) {
+        const ofc_image image = camera(number, y);
+        start = board_instructions();
+        status = ofc_stream_row(stream, y, &image);
+        *instructions += board_instructions() - start;
+    }
+    start = board_instructions();
+    if (status == OFC_STATUS_OK)
+        status = ofc_stream_end(stream, next);
+    *instructions += board_instructions() - start;
+    return status;
 }
 
-/* The lights have not moved: their F turns the next frame's colors into normals. Returns the mean angle to the truth. */
-static ofc_status warm(int number, float *error_deg)
+/* The normals of a frame, and their mean angle to the truth. */
+static ofc_status look(int number, float *error_deg, uint64_t *instructions)
 {
     float sum = 0;
     uint32_t count = 0;
     for (int y = 0; y < HEIGHT; y++) {
-        static float normals[WIDTH][3];
-        const ofc_image image = rows(y, 1);
-        const ofc_status status = ofc_normals_compute(&image, &solution, normals[0], sizeof normals);
+        const ofc_image image = camera(number, y);
+        const uint64_t start = board_instructions();
+        const ofc_status status = ofc_stream_normals_row(stream, &image, normals[0]);
+        *instructions += board_instructions() - start;
         if (status != OFC_STATUS_OK)
             return status;
         for (int x = 0; x < WIDTH; x++) {
@@ -96,27 +99,43 @@ static void print_lamp(int c)
 int main(void)
 {
     uint64_t start = board_instructions();
-    camera(0);
+    for (int y = 0; y < HEIGHT; y++)
+        (void)camera(0, y);
     report("render", board_instructions() - start);
 
-    start = board_instructions();
-    ofc_status status = cold();
-    report("cold", board_instructions() - start);
+    /* Cold: the first frame, as often as it takes. */
+    uint64_t instructions = 0;
+    ofc_stream_params params;
+    ofc_stream_pass next = OFC_PASS_COLORS;
+    ofc_status status = ofc_stream_params_default(&params);
+    if (status == OFC_STATUS_OK)
+        status = ofc_stream_init(WIDTH, HEIGHT, OFC_PIXEL_RGB8, &params, memory, sizeof memory, &stream);
+    while (status == OFC_STATUS_OK && next != OFC_PASS_REFINE)
+        status = pass(0, &next, &instructions);
+    report("cold", instructions);
 
     for (int number = 0; number < 3 && status == OFC_STATUS_OK; number++) {
         float error_deg = 0;
-        camera(number);
-        start = board_instructions();
-        status = warm(number, &error_deg);
-        report(number == 0 ? "normals" : "warm", board_instructions() - start);
+        instructions = 0;
+        if (number > 0) /* warm: the next frame refines what the last one taught */
+            status = pass(number, &next, &instructions);
+        if (number == 1)
+            report("warm", instructions);
+        instructions = 0;
+        if (status == OFC_STATUS_OK)
+            status = look(number, &error_deg, &instructions);
+        if (number == 0)
+            report("normals", instructions);
         print_text("frame ");
         print_integer((uint32_t)number);
         print_text(": mean angle to the true normals ");
         print_decimal(error_deg);
         print_text(" degrees\n");
-        if (error_deg > 4)
+        if (error_deg > 6)
             return 2;
     }
+    if (status == OFC_STATUS_OK)
+        status = ofc_stream_solution(stream, &solution);
     if (status != OFC_STATUS_OK) {
         print_text(ofc_status_message(status));
         print_text("\n");

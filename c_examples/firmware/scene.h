@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-enum { WIDTH = 160, HEIGHT = 120 };
+enum { WIDTH = 320, HEIGHT = 240 };
 
 struct lamp {
     float direction[3]; /* x right, y up, z toward the camera */

@@ -254,8 +254,9 @@ impl<'m> Stream<'m> {
 
     /// Forgets the model: the next frame is for colors.
     pub fn restart(&mut self) {
-        self.state.row = None;
-        self.state.pass = Pass::Colors;
+        let state = &mut *self.state;
+        (state.row, state.pass, state.drift, state.concluded) = (None, Pass::Colors, None, false);
+        state.solution.restart(Census::default());
     }
 
     /// Begins a frame, and says what for. One that was not ended is forgotten.

@@ -27,6 +27,8 @@ unsafe impl Plain for f64 {}
 unsafe impl Plain for i32 {}
 // SAFETY: as above.
 unsafe impl Plain for u32 {}
+// SAFETY: as above.
+unsafe impl Plain for u64 {}
 // SAFETY: as its elements, and arrays have no gaps.
 unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}
 

@@ -64,9 +64,7 @@ pub struct ofc_stream_drift {
 unsafe impl Plain for ofc_stream_params {}
 // SAFETY: as above.
 unsafe impl Plain for ofc_stream_drift {}
-// SAFETY: every bit pattern is a value.
-unsafe impl Plain for u64 {}
-// SAFETY: as above.
+// SAFETY: a raw pointer.
 unsafe impl Plain for *mut ofc_stream {}
 
 /// A stream in memory of the caller's: see ofc_stream_init(). It may be copied to another place of the same alignment.
@@ -318,7 +316,7 @@ pub unsafe extern "C" fn ofc_stream_row(
 /// Ends the frame.
 ///
 /// @param stream  The stream.
-/// @param pass    Output: what the next frame is for, one of OFC_PASS_*; may be NULL. Written unless an argument is invalid.
+/// @param pass    Output: what the next frame is for, one of OFC_PASS_*; may be NULL.
 /// @return OFC_STATUS_OK: the next pass follows from this one. OFC_STATUS_COLD_START_NEEDED: the frame does not fit the
 ///         model, as ofc_stream_drift_get() says; the next pass is over colors. A cold start that comes to no F ends with
 ///         OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_NO_TILT or
@@ -333,18 +331,16 @@ pub unsafe extern "C" fn ofc_stream_end(stream: *mut ofc_stream, pass: *mut ofc_
         // SAFETY: the contract of this function.
         let (mut stream, own) = unsafe { opened(stream) }?;
         let out = optional(pass, own)?;
-        let ended = stream.end();
-        let state = stream.state();
+        let next = stream.end().map_err(of_stream_error)?;
         if let Some(out) = out {
-            out.write(of_pass(state.pass()));
+            out.write(of_pass(next));
         }
-        let refused = state.pass() == Pass::Colors;
-        match ended {
-            Err(error) => Err(of_stream_error(error)),
-            Ok(_) if refused && state.drift().is_some() => Ok(OFC_STATUS_COLD_START_NEEDED),
-            Ok(_) if refused => Ok(of_outcome(state.solution().outcome)),
-            Ok(_) => Ok(OFC_STATUS_OK),
-        }
+        let state = stream.state();
+        Ok(match (next, state.drift()) {
+            (Pass::Colors, Some(_)) => OFC_STATUS_COLD_START_NEEDED,
+            (Pass::Colors, None) => of_outcome(state.solution().outcome),
+            _ => OFC_STATUS_OK,
+        })
     };
     of(body())
 }

@@ -307,6 +307,7 @@ fn frames_that_are_none() {
     assert_eq!(camera.state.normals(&narrow, &mut [0.0; 960]), Err(StreamError::Row));
     camera.stream().restart();
     assert_eq!(camera.state.pass(), Pass::Colors);
+    assert!(camera.state.orientation().is_none() && !camera.state.is_concluded());
 }
 
 #[test]

@@ -57,7 +57,7 @@ impl Grid {
         let stride = self.stride();
         let (above, rest) = array.split_at_mut_checked(stride + 1).unwrap_or_default();
         above.fill(0.0);
-        for row in rest.chunks_mut(stride).take(self.height) {
+        for row in rest.chunks_mut(stride.max(1)).take(self.height) {
             row.iter_mut().skip(self.width).for_each(|padding| *padding = 0.0);
         }
         rest.iter_mut().skip(self.height * stride).for_each(|padding| *padding = 0.0);

@@ -275,8 +275,8 @@ fn multiply(colors: &mut [&mut [f32]; 3], factor: f64) {
 fn keep(row: &Image, memory: &mut Memory) {
     let width = row.width();
     row.for_each_window(|window| {
-        for (channel, color) in memory.values.chunks_exact_mut(width).zip(&window.color) {
-            let out = channel.get_mut(window.x..).unwrap_or_default();
+        for (channel, color) in window.color.iter().enumerate() {
+            let out = memory.values.get_mut(channel * width + window.x..).unwrap_or_default();
             for (i, (out, &value)) in out.iter_mut().zip(color).take(window.len).enumerate() {
                 *out = if window.masked >> i & 1 == 1 { value } else { f32::NAN };
             }
@@ -289,8 +289,9 @@ fn kept(x: usize, width: usize, memory: &Memory, window: &mut Window) {
     window.x = x;
     window.len = width.saturating_sub(x).min(WINDOW);
     window.masked = if window.len == WINDOW { u64::MAX } else { (1 << window.len) - 1 };
-    for (channel, out) in memory.values.chunks_exact(width.max(1)).zip(&mut window.color) {
-        for (out, &value) in out.iter_mut().zip(channel.get(x..).unwrap_or_default()) {
+    for (channel, out) in window.color.iter_mut().enumerate() {
+        let from = memory.values.get(channel * width + x..).unwrap_or_default();
+        for (out, &value) in out.iter_mut().take(window.len).zip(from) {
             *out = value;
         }
     }
