@@ -316,7 +316,7 @@ static void bad_streams(void **state)
     struct {
         ofc_stream_params params;
         ofc_status expected;
-    } bad[10];
+    } bad[11];
     size_t n = 0;
 #define BAD(status, field, value)                                                                                      \
     (bad[n].params = params, bad[n].params.field = (value), bad[n++].expected = (status))
