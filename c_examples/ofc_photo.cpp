@@ -96,6 +96,23 @@ std::optional<ofc_check_result> check(const Picture &picture, const Result &resu
     return status == OFC_STATUS_OK ? std::make_optional(found) : std::nullopt;
 }
 
+// The picture divided by that of the flat surface alone.
+Picture flattened(const Picture &picture, const Picture &background, const std::string &path)
+{
+    const ofc_image image = picture.view(), below = background.view();
+    Picture flat;
+    flat.pixels.create(picture.size(), CV_32FC3);
+    ofc_flat_field_result result;
+    const ofc_status status =
+        ofc_flat_field(&image, &below, flat.pixels.ptr<float>(), flat.pixels.step, &result);
+    if (status != OFC_STATUS_OK)
+        throw UsageError(path + " is no background of the picture: " + ofc_status_message(status));
+    cv::cvtColor(flat.pixels, flat.pixels, cv::COLOR_RGB2BGR);
+    std::printf("%-10s %d pixels divided; left out %d dark and %d saturated ones\n", "background", result.used, result.dark,
+                result.saturated);
+    return flat;
+}
+
 int run(const Options &options)
 {
     Picture picture;
@@ -111,6 +128,8 @@ int run(const Options &options)
         truth = scene.normals;
         true_f = scene.f;
     }
+    if (!options.background.empty())
+        picture = flattened(picture, read_picture(options.background), options.background);
     if (!options.mask.empty())
         picture.mask = read_mask(options.mask, picture.size());
     if (!options.truth.empty())

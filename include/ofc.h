@@ -35,8 +35,8 @@
  * Threads     no global state: calls on different outputs and workspaces may run at the same time.
  * Same bits   same version, same input, same seed: same output bits, on any target with IEEE 754 arithmetic.
  * NaN         pixels that are NaN or infinite are left out and counted; parameters that are not finite are refused.
- *             The only NaNs in outputs are "no value here" of ofc_slant_curve_sample() and ofc_depth_integrate(), whose bits
- *             are 0x7ff8000000000000 and 0x7fc00000 on every target.
+ *             The only NaNs in outputs are "no value here" of ofc_slant_curve_sample(), ofc_depth_integrate() and
+ *             ofc_flat_field(), whose bits are 0x7ff8000000000000 and 0x7fc00000 on every target.
  * Reading     equation and section numbers are those of M. S. Drew, "Direct Solution of Orientation-from-Color Problem
  *             using a Modification of Pentland's Light Source Direction Estimator".
  */
@@ -757,6 +757,20 @@ typedef struct ofc_depth_result {
     uint32_t reserved;
 } ofc_depth_result;
 
+// What flat-fielding did.
+typedef struct ofc_flat_field_result {
+    // The mean of each channel of the background, that the quotients are scaled by.
+    double mean[3];
+    // Pixels that have a value.
+    int32_t used;
+    // Pixels left out because the background is dark (a channel below a twentieth of its mean), masked out or not finite.
+    int32_t dark;
+    // Pixels left out because the background, or else the picture, is saturated there.
+    int32_t saturated;
+    // Zero.
+    uint32_t reserved;
+} ofc_flat_field_result;
+
 // A disc of pixels.
 typedef struct ofc_disc {
     // Column of the middle pixel.
@@ -1115,6 +1129,23 @@ ofc_status ofc_depth_integrate(const struct ofc_depth_input *input,
 ofc_status ofc_depth_normals(const struct ofc_depth_map *depth,
                              float *normals,
                              size_t normals_stride_bytes);
+
+// Divides a picture by that of the same flat, uniform surface without the object, and scales it by the mean of that: what
+// near lights that fall off across the field need before ofc_solve(), which then takes the result as OFC_PIXEL_RGB32F.
+//
+// @param image       The picture.
+// @param background  The same surface without the object, of the same size; any format, its mask counts.
+// @param pixels      Output: height rows of width times (r, g, b) floats, in the pixel values of `image`; NaN, which
+//                    ofc_solve() leaves out, where background or picture say nothing.
+// @param pixels_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
+// @param result      Output.
+// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER for a background of another size; OFC_STATUS_DARK for one without a
+//         usable pixel; the status of an invalid argument.
+ofc_status ofc_flat_field(const struct ofc_image *image,
+                          const struct ofc_image *background,
+                          float *pixels,
+                          size_t pixels_stride_bytes,
+                          struct ofc_flat_field_result *result);
 
 // Pentland's tilts of the three channels' equivalent lights, from mean differences between neighbouring inliers along
 // the axes and diagonals; for a closed convex surface.

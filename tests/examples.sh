@@ -141,6 +141,12 @@ data=${OFC_DATA:-../shared/data}
 if [ -d "$data" ]; then
     expect 0 "$photo" "$data/cat_figurine/rgb.png" --mask "$data/cat_figurine/mask.png" --out "$out/cat"
     json "$out/cat/report.json" 'r["inliers"]["after_norms"] > 80000'
+    # Near lights: divided by the gel alone, the ball of 9.5 mm is nearer to the truth.
+    ball=$data/gelsight_ball_9mm
+    expect 0 "$photo" "$ball/rgb.png" --background "$ball/background.png" --mask "$ball/mask.png" --out "$out/flat"
+    says "divided"
+    expect 2 "$photo" "$ball/rgb.png" --background "$data/cat_figurine/rgb.png" --out "$out/flat"
+    says "no background"
     # Photometric stereo with unknown lights: the same three pictures as planes, by either fit.
     expect 0 "$photo" "$data/cat_figurine/rgb.png" --mask "$data/cat_figurine/mask.png" --save-planes --out "$out/planes"
     for fit in median squares; do

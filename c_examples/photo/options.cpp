@@ -16,6 +16,8 @@ Options parse_options(int argc, char **argv)
         ->type_name("R.png G.png B.png")
         ->excludes(image);
     app.add_option("--mask", options.mask, "Gray picture, 0 where pixels are to be left out")->type_name("MASK.png");
+    app.add_option("--background", options.background, "The same flat surface without the object: divides by it (near lights)")
+        ->type_name("BG.png");
     app.add_option("--seed", options.seed, "Seed of the random subsets (default 0)");
     app.add_option("--subsets", options.subsets, "Random subsets to draw (default: as many as needed)")
         ->check(CLI::Range(1, 10000000));
@@ -33,8 +35,8 @@ Options parse_options(int argc, char **argv)
     app.add_option("--out", options.out, "Folder for the results (default: out)")->type_name("DIR");
     try {
         app.parse(argc, argv);
-        if (options.image.empty() && options.planes.empty() && (!options.mask.empty() || !options.truth.empty()))
-            throw CLI::RequiredError("IMAGE or --planes, to which --mask and --truth belong,");
+        if (options.image.empty() && options.planes.empty() && (!options.mask.empty() || !options.truth.empty() || !options.background.empty()))
+            throw CLI::RequiredError("IMAGE or --planes, to which --mask, --truth and --background belong,");
     } catch (const CLI::ParseError &error) {
         std::exit(app.exit(error) == 0 ? 0 : 2);
     }

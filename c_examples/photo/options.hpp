@@ -11,7 +11,7 @@
 struct Options {
     std::string image;               // empty: the program renders its own scene
     std::vector<std::string> planes; // none, or red, green, blue
-    std::string mask, truth;         // empty where not given
+    std::string mask, truth, background; // empty where not given
     std::optional<std::uint64_t> seed;
     std::optional<std::uint32_t> subsets;
     DepthOptions depth;

@@ -15,6 +15,7 @@ pub mod constrained_slant;
 pub mod depth;
 pub mod differences;
 pub mod ellipsoid;
+pub mod flat_field;
 pub mod image;
 pub mod inliers;
 pub mod integrability;

@@ -7,6 +7,7 @@
 
 mod check;
 mod depth;
+mod flat_field;
 mod image;
 mod light;
 mod orientation;
@@ -24,6 +25,7 @@ mod version;
 
 pub use check::*;
 pub use depth::*;
+pub use flat_field::*;
 pub use image::*;
 pub use light::*;
 pub use orientation::*;

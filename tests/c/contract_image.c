@@ -135,13 +135,82 @@ static void pixels_that_are_left_out(void **state)
     assert_int_equal(solution.census.usable, expected.census.usable - 5);
 }
 
+static struct {
+    float pixels[HEIGHT][WIDTH + 1][3];
+    ofc_flat_field_result result;
+} flat;
+
+static uint8_t background[HEIGHT][WIDTH][3];
+
+static ofc_status divided(const ofc_image *image)
+{
+    ofc_image below = ball_image();
+    below.pixels = background;
+    return ofc_flat_field(image, &below, flat.pixels[0][0], sizeof flat.pixels[0], &flat.result);
+}
+
+static ofc_status divided_by(const ofc_image *below)
+{
+    const ofc_image image = ball_image();
+    return ofc_flat_field(&image, below, flat.pixels[0][0], sizeof flat.pixels[0], &flat.result);
+}
+
+static void flat_field(void **state)
+{
+    (void)state;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            for (int c = 0; c < 3; c++)
+                background[y][x][c] = (uint8_t)(60 + x + 10 * c);
+    refuses_bad_images(divided, &flat, sizeof flat);
+    refuses_bad_images(divided_by, &flat, sizeof flat);
+    const ofc_image image = ball_image();
+    ofc_image below = image;
+    below.pixels = background;
+#define DIVIDE(below, pixels, stride, result) ofc_flat_field(&image, below, pixels, stride, result)
+    REFUSED(OFC_STATUS_NULL_POINTER, flat, DIVIDE(&below, NULL, sizeof flat.pixels[0], &flat.result));
+    REFUSED(OFC_STATUS_NULL_POINTER, flat, DIVIDE(&below, flat.pixels[0][0], sizeof flat.pixels[0], NULL));
+    REFUSED(OFC_STATUS_MISALIGNED, flat, DIVIDE(&below, MISALIGNED(flat.pixels), sizeof flat.pixels[0], &flat.result));
+    REFUSED(OFC_STATUS_MISALIGNED, flat, DIVIDE(&below, flat.pixels[0][0], WIDTH * 12 + 2, &flat.result));
+    REFUSED(OFC_STATUS_MISALIGNED, flat, DIVIDE(&below, flat.pixels[0][0], WIDTH * 12, MISALIGNED(&flat.result)));
+    REFUSED(OFC_STATUS_STRIDE_TOO_SMALL, flat, DIVIDE(&below, flat.pixels[0][0], WIDTH * 12 - 4, &flat.result));
+    REFUSED(OFC_STATUS_TOO_LARGE, flat, DIVIDE(&below, flat.pixels[0][0], SIZE_MAX - 3, &flat.result));
+    REFUSED(OFC_STATUS_OVERLAP, flat, DIVIDE(&below, (float *)(void *)background, WIDTH * 12, &flat.result));
+    REFUSED(OFC_STATUS_OVERLAP, flat,
+            DIVIDE(&below, flat.pixels[0][0], WIDTH * 12, (ofc_flat_field_result *)(void *)flat.pixels));
+    below.height--;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, flat, DIVIDE(&below, flat.pixels[0][0], sizeof flat.pixels[0], &flat.result));
+    static uint8_t black[HEIGHT][WIDTH][3];
+    below = image;
+    below.pixels = black;
+    REFUSED(OFC_STATUS_DARK, flat, DIVIDE(&below, flat.pixels[0][0], sizeof flat.pixels[0], &flat.result));
+    below.pixels = background;
+    background[7][9][1] = 0;
+    background[8][9][2] = 255;
+    memset(&flat, PATTERN, sizeof flat);
+    assert_int_equal(DIVIDE(&below, flat.pixels[0][0], sizeof flat.pixels[0], &flat.result), OFC_STATUS_OK);
+    assert_int_equal(flat.result.dark, 1);
+    assert_int_equal(flat.result.used + flat.result.saturated, PIXELS - 1);
+    assert_true(flat.result.saturated >= 1 && flat.result.mean[0] > 100 && flat.result.mean[2] > flat.result.mean[0]);
+    for (int y = 0; y < HEIGHT; y++) {
+        for (int x = 0; x < WIDTH; x++)
+            for (int c = 0; c < 3; c++) {
+                const float value = flat.pixels[y][x][c];
+                const double expected = ball[y][x][c] * flat.result.mean[c] / background[y][x][c];
+                assert_true(isnan(value) || fabs(value - expected) < 1e-4 * expected + 1e-6);
+            }
+        assert_true(is_untouched(flat.pixels[y][WIDTH], sizeof flat.pixels[y][WIDTH]));
+    }
+    assert_true(isnan(flat.pixels[7][9][0]) && isnan(flat.pixels[8][9][0]));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(interleaved),
         cmocka_unit_test(three_planes),
         cmocka_unit_test(masks),
-        cmocka_unit_test(pixels_that_are_left_out),
+        cmocka_unit_test(pixels_that_are_left_out), cmocka_unit_test(flat_field),
     };
     return cmocka_run_group_tests(tests, prepare, NULL);
 }

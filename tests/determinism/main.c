@@ -44,8 +44,9 @@ int main(void)
         print(scenes[i].name, "segments and ranks");
         mix_solve(&image, i);
         print(scenes[i].name, "solve");
+        mix_flat_field(&image);
         mix_stream(&image);
-        print(scenes[i].name, "stream");
+        print(scenes[i].name, "flat field and stream");
     }
     board_print("done\n");
     return 0;

@@ -72,6 +72,18 @@ void mix_solve(const ofc_image *image, int variant)
     solve(image, &params);
 }
 
+void mix_flat_field(const ofc_image *image)
+{
+    ofc_flat_field_result result = {0};
+    const ofc_status status = ofc_flat_field(image, image, normals, (size_t)image->width * 3 * sizeof(float), &result);
+    mix_status(status);
+    mix_floats(normals, status == OFC_STATUS_OK ? image->width * image->height * 3 : 0);
+    mix_doubles(result.mean, 3);
+    mix_status(result.used);
+    mix_status(result.dark);
+    mix_status(result.saturated);
+}
+
 void mix_segments(const ofc_image *image, const struct fitted *fitted)
 {
     static uint16_t labels[PIXELS];
