@@ -4,6 +4,9 @@
 //! least-squares solution of these equations, one for every edge between pixels of the mask, with natural boundaries.
 //! [`Method`] says what becomes of pixels whose slope is not to be trusted.
 //!
+//! Masks, weights and priors are solved for by multigrid. A whole rectangle without weights and prior is solved directly, in
+//! no cycles, if its height or width has no prime factor above 7.
+//!
 //! # Shape
 //! Pictures of up to [`MAX_PIXELS`] pixels, row 0 at the top, rows any stride apart.
 //!
@@ -30,18 +33,22 @@
 #![allow(clippy::inline_always, reason = "row kernels are only fast when they melt into one vectorised loop")]
 
 mod coarsen;
+mod cosine_transform;
 mod coupled;
+mod fourier;
 mod grid;
 mod input;
 mod operator;
 mod paper;
 mod poisson;
+mod rectangle;
 mod regions;
 mod right_side;
 mod solver;
 mod sweep;
 mod transfer;
 mod trend;
+mod tridiagonal;
 
 pub use input::{DepthInput, Plane, Slopes, WEIGHT_RANGE};
 
@@ -111,11 +118,12 @@ impl DepthParams {
 /// What came out, beside the depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DepthResult {
-    /// Whether the tolerance was reached.
+    /// Whether the tolerance was reached, or, by a direct solution, what f32 can hold.
     pub converged: bool,
-    /// Multigrid cycles, of all systems of equations together.
+    /// Multigrid cycles, of all systems of equations together: zero if depth was solved for directly.
     pub cycles: u32,
-    /// The last residual as a part of the right side's norm. It is that of the solution before it is rounded to f32.
+    /// The last residual as a part of the right side's norm. It is that of the solution before it is rounded to f32, but
+    /// by a direct solution, where nothing but that rounding is left, that of the rounded one: 1e-3 for a million pixels.
     pub residual: f64,
     /// Connected regions. Each has zero mean depth unless a prior reaches into it.
     pub regions: usize,

@@ -495,7 +495,7 @@ fn the_same_bits_everywhere() {
 }
 
 /// What [`the_same_bits_everywhere`] gave when it was written, on x86-64.
-const GOLDEN: [u64; 3] = [0x6c6f_4345_db1c_1547, 0x10bc_5bab_678c_70dc, 0x6f7c_6537_5a04_a0ca];
+const GOLDEN: [u64; 3] = [0x6c6f_4345_db1c_1547, 0x82cf_c5e7_4180_ab70, 0x6f7c_6537_5a04_a0ca];
 
 #[test]
 fn one_row_one_column_one_pixel() {
@@ -518,7 +518,7 @@ fn one_row_one_column_one_pixel() {
 
 #[test]
 fn stops_where_it_is_told_to() {
-    let scene = scene([64, 64], bumps, 0.01, all);
+    let scene = scene([64, 64], bumps, 0.01, disc(64));
     let (_, result) = run(&scene.input(), &DepthParams { max_cycles: 1, ..DepthParams::default() }).unwrap();
     assert!(!result.converged && result.cycles == 1 && result.residual > 1e-4, "{result:?}");
     let (_, result) = run(&scene.input(), &DepthParams { max_cycles: 0, ..DepthParams::default() }).unwrap();

@@ -82,6 +82,7 @@ pub(super) fn build<P: Packing>(
     packing: P,
     hierarchy: &mut Hierarchy,
 ) -> Option<()> {
+    hierarchy.coarse.fill(0.0);
     find_fine_spans(Fine { grid, packed, packing }, hierarchy);
     if attach_strays(&mut FineGrid { grid, packed, packing }, hierarchy.spans) {
         find_fine_spans(Fine { grid, packed, packing }, hierarchy);

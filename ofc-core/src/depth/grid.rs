@@ -163,7 +163,6 @@ pub(super) fn split(grid: Grid, workspace: &mut [f32]) -> Option<Parts<'_>> {
     let buffers = rest.split_off_mut(..ROW_BUFFERS as usize * (grid.width + 2))?;
     let spans = rest.split_off_mut(..SPAN_NUMBERS as usize * (2 * grid.height + MAX_LEVELS))?;
     buffers.fill(0.0);
-    rest.fill(0.0);
     Some(Parts { grid, fine, hierarchy: Hierarchy { finest: grid, coarse: rest, spans }, buffers })
 }
 

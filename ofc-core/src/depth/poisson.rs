@@ -66,6 +66,9 @@ impl Job<'_> {
     /// `converged` says whether all went well until now.
     #[inline(never)]
     pub fn depth(mut self, so_far: DepthResult, converged: bool) -> Answer {
+        if let Some(along) = self.is_direct() {
+            return self.rectangle(along, so_far, converged);
+        }
         let params = self.params;
         let packing = Signed { mass: params.prior_weight as f32 };
         let anchored = params.prior_weight > 0.0 && self.input.prior.is_some();
@@ -190,7 +193,7 @@ impl Job<'_> {
 }
 
 /// The one NaN that is ever written.
-const NO_DEPTH: f32 = f32::from_bits(0x7fc0_0000);
+pub(super) const NO_DEPTH: f32 = f32::from_bits(0x7fc0_0000);
 
 /// Known depths on their way into the equations.
 struct Prior<'a> {
