@@ -165,7 +165,9 @@ impl<'a> CosineTransform<'a> {
     /// Writes the scratch to rows `x` and following of the spectrum.
     fn store_spectrum(&self, x: usize, width: usize, spectrum: &mut Rows<&mut [f32]>) {
         let n = self.lengths.n;
-        let mut rows = spectrum.data.chunks_mut(spectrum.stride.max(1)).take(width).skip(x);
+        let stride = spectrum.stride.max(1);
+        let data = spectrum.data.get_mut(x * stride..).unwrap_or_default();
+        let mut rows = data.chunks_mut(stride).take(width.saturating_sub(x));
         let value = |place: f32| self.scratch.get(place.to_bits() as usize).copied().unwrap_or_default();
         for part in 0..COLUMNS / 4 {
             let lanes = |place: f32| pick(&value(place), part);
@@ -193,7 +195,9 @@ impl<'a> CosineTransform<'a> {
     /// Reads rows `x` and following of the spectrum, zero where there is none.
     fn load_spectrum(&mut self, spectrum: &Rows<&[f32]>, x: usize, width: usize) {
         let n = self.lengths.n;
-        let mut rows = spectrum.data.chunks(spectrum.stride.max(1)).take(width).skip(x);
+        let stride = spectrum.stride.max(1);
+        let data = spectrum.data.get(x * stride..).unwrap_or_default();
+        let mut rows = data.chunks(stride).take(width.saturating_sub(x));
         for part in 0..COLUMNS / 4 {
             let four = [rows.next(), rows.next(), rows.next(), rows.next()];
             if let [Some(a), Some(b), Some(c), Some(d)] = four {

@@ -73,7 +73,8 @@ fn solve_block(data: &mut [f32], stride: usize, k: usize, n: usize) {
     let near_rows = reach as usize;
     let rows = data.chunks_exact(stride.max(1));
     let mut value = if near_rows < width {
-        let near = rows.take(near_rows).rev();
+        // Not `take`: its way back slices with a check.
+        let near = data.get(..near_rows * stride).unwrap_or_default().chunks_exact(stride.max(1)).rev();
         near.fold([0.0; BLOCK], |sum, row| next(load(row, k, end), sum))
     } else {
         let near = rows.clone().rev().fold([0.0; BLOCK], |sum, row| next(load(row, k, end), sum));
