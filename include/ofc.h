@@ -741,9 +741,11 @@ typedef struct ofc_depth_input {
 
 // How the integration went.
 typedef struct ofc_depth_result {
-    // The last residual, as a part of the right side's norm, before the depth is rounded to float.
+    // The last residual, as a part of the right side's norm, before the depth is rounded to float; of a rectangle that was
+    // solved directly that of the floats, which rounding alone leaves (1e-3 for a million pixels).
     double residual;
-    // Multigrid cycles, of all systems of equations together.
+    // Multigrid cycles, of all systems of equations together; 0 for a rectangle without gaps, weights and prior, which is
+    // solved directly where one of its sides has no prime factor above 7.
     int32_t cycles;
     // Connected regions. Each has zero mean depth unless the prior reaches into it.
     int32_t regions;
@@ -751,7 +753,7 @@ typedef struct ofc_depth_result {
     int32_t pixel_count;
     // Pixels of the mask that were unusable.
     int32_t excluded_count;
-    // 1 when the tolerance was reached, 0 otherwise.
+    // 1 when the tolerance was reached, or what floats can hold; 0 otherwise.
     int32_t converged;
     // Zero.
     uint32_t reserved;

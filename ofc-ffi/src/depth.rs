@@ -91,9 +91,11 @@ pub struct ofc_depth_params {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_depth_result {
-    /// The last residual, as a part of the right side's norm, before the depth is rounded to float.
+    /// The last residual, as a part of the right side's norm, before the depth is rounded to float; of a rectangle that was
+    /// solved directly that of the floats, which rounding alone leaves (1e-3 for a million pixels).
     pub residual: f64,
-    /// Multigrid cycles, of all systems of equations together.
+    /// Multigrid cycles, of all systems of equations together; 0 for a rectangle without gaps, weights and prior, which is
+    /// solved directly where one of its sides has no prime factor above 7.
     pub cycles: i32,
     /// Connected regions. Each has zero mean depth unless the prior reaches into it.
     pub regions: i32,
@@ -101,7 +103,7 @@ pub struct ofc_depth_result {
     pub pixel_count: i32,
     /// Pixels of the mask that were unusable.
     pub excluded_count: i32,
-    /// 1 when the tolerance was reached, 0 otherwise.
+    /// 1 when the tolerance was reached, or what floats can hold; 0 otherwise.
     pub converged: i32,
     /// Zero.
     pub reserved: u32,
