@@ -153,7 +153,7 @@ impl Job<'_> {
         for y in 0..grid.height {
             let [constant, linear, square] = trend.depth(y);
             let row = output.row_mut(y);
-            for (x, z) in (0_u32..).zip(row.iter_mut()) {
+            for (x, z) in (0_i32..).zip(row.iter_mut()) {
                 let x = f64::from(x);
                 *z = (f64::from(*z) + (constant + x * (linear + x * square))) as f32;
             }

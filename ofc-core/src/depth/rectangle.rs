@@ -226,7 +226,7 @@ fn subtract_trend(trend: &Trend, y: usize, last: usize, out: &mut [f32]) {
         constant -= pp;
     }
     let (constant, linear) = (constant as f32, linear as f32);
-    for (x, out) in out.iter_mut().enumerate() {
+    for (x, out) in (0_i32..).zip(out) {
         *out -= constant + linear * x as f32;
     }
 }
