@@ -168,8 +168,12 @@ fn attach_strays<A: Attachable>(target: &mut A, spans: &[f32]) -> bool {
     let grid = target.view().grid();
     let mut strays = 0_usize;
     for y in (0..grid.height).step_by(2) {
-        let [from, to] = Span::load(spans, y, grid.width).unit;
-        for x in (0..grid.width).step_by(2) {
+        let Span { active: [first, last], unit: [from, to] } = Span::load(spans, y, grid.width);
+        // Below the last row there is none, and no span of it.
+        let below = (y + 1 < grid.height).then(|| Span::load(spans, y + 1, grid.width).active);
+        let [first_below, last_below] = below.unwrap_or([first, last]);
+        let (first, last) = (first.min(first_below) & !1, last.max(last_below));
+        for x in (first..last).step_by(2) {
             if x >= from && x < to {
                 continue;
             }
@@ -189,7 +193,8 @@ fn attach_strays<A: Attachable>(target: &mut A, spans: &[f32]) -> bool {
         return false;
     }
     for y in 0..grid.height {
-        for x in 0..grid.width {
+        let Span { active: [first, last], unit: [from, to] } = Span::load(spans, y, grid.width);
+        for x in (first..from).chain(to..last) {
             let index = grid.start(y) + x;
             let attachment = better_block(&target.view(), index, x, y);
             if let Some(attachment) = attachment {
