@@ -8,7 +8,6 @@ use super::cosine_transform::{CosineTransform, Rows};
 use super::fourier::Lengths;
 use super::grid::{FineArrays, Grid, Parts};
 use super::input::SlopeRow;
-use super::operator::at;
 use super::poisson::{Answer, Job, NO_DEPTH};
 use super::sweep::{Buffers, dot};
 use super::trend::{Fit, Trend};
@@ -262,11 +261,20 @@ fn solve(grid: &Grid, along: Along, fine: &mut FineArrays, workspace: &mut [f32]
     Some(())
 }
 
+/// Columns that are turned together, so that whole cache lines are read.
+const BAND: usize = 16;
+
 /// Writes the columns of a picture of this width and height as rows.
 fn turn(from: &Rows<&[f32]>, [width, height]: [usize; 2], to: &mut Rows<&mut [f32]>) {
-    for (x, row) in to.data.chunks_mut(to.stride.max(1)).take(width).enumerate() {
-        for (out, from) in row.iter_mut().zip(from.data.chunks(from.stride.max(1))).take(height) {
-            *out = at(from, x);
+    let bands = to.data.chunks_mut((BAND * to.stride).max(1));
+    for (x, band) in (0..width).step_by(BAND).zip(bands) {
+        for (y, from) in from.data.chunks(from.stride.max(1)).take(height).enumerate() {
+            let columns = from.get(x..width.min(x + BAND)).unwrap_or_default();
+            for (row, &value) in band.chunks_mut(to.stride.max(1)).zip(columns) {
+                if let Some(slot) = row.get_mut(y) {
+                    *slot = value;
+                }
+            }
         }
     }
 }

@@ -62,6 +62,7 @@ fn sum_twice(data: &mut [f32], stride: usize) {
 type Block = [f32; BLOCK];
 
 /// Frequencies `k` to `k + BLOCK`, as far as there are.
+#[inline(never)]
 fn solve_block(data: &mut [f32], stride: usize, k: usize, n: usize) {
     let width = data.len() / stride.max(1);
     let end = n.min(k + BLOCK);
@@ -80,8 +81,8 @@ fn solve_block(data: &mut [f32], stride: usize, k: usize, n: usize) {
     let near_rows = reach as usize;
     let rows = data.chunks_exact(stride.max(1));
     let mut value = if near_rows < width {
-        let near = rows.take(near_rows).rev();
-        near.fold([0.0; BLOCK], |sum, row| next(load(row, k, end), sum))
+        let near = data.get(..near_rows * stride).unwrap_or_default().chunks_exact(stride.max(1));
+        near.rev().fold([0.0; BLOCK], |sum, row| next(load(row, k, end), sum))
     } else {
         let near = rows.clone().rev().fold([0.0; BLOCK], |sum, row| next(load(row, k, end), sum));
         let far = rows.fold([0.0; BLOCK], |sum, row| next(load(row, k, end), sum));
