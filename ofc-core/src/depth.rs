@@ -5,7 +5,7 @@
 //! [`Method`] says what becomes of pixels whose slope is not to be trusted.
 //!
 //! Masks, weights and priors are solved for by multigrid. A whole rectangle without weights and prior is solved directly, in
-//! no cycles, if its height or width has no prime factor above 7.
+//! no cycles, by [`Method::Poisson`] and [`Method::Paper`], if its height or width has no prime factor above 7.
 //!
 //! # Shape
 //! Pictures of up to [`MAX_PIXELS`] pixels, row 0 at the top, rows any stride apart.
@@ -123,7 +123,8 @@ pub struct DepthResult {
     /// Multigrid cycles, of all systems of equations together: zero if depth was solved for directly.
     pub cycles: u32,
     /// The last residual as a part of the right side's norm. It is that of the solution before it is rounded to f32, but
-    /// by a direct solution, where nothing but that rounding is left, that of the rounded one: 1e-3 for a million pixels.
+    /// by a direct solution, where nothing but that rounding is left, that of the rounded one: 1e-3 for a million pixels,
+    /// 1e-2 for ten.
     pub residual: f64,
     /// Connected regions. Each has zero mean depth unless a prior reaches into it.
     pub regions: usize,

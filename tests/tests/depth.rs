@@ -495,7 +495,7 @@ fn the_same_bits_everywhere() {
 }
 
 /// What [`the_same_bits_everywhere`] gave when it was written, on x86-64.
-const GOLDEN: [u64; 3] = [0x6c6f_4345_db1c_1547, 0x82cf_c5e7_4180_ab70, 0x6f7c_6537_5a04_a0ca];
+const GOLDEN: [u64; 3] = [0x6c6f_4345_db1c_1547, 0x6fc1_5cb3_f7df_2776, 0x6f7c_6537_5a04_a0ca];
 
 #[test]
 fn one_row_one_column_one_pixel() {

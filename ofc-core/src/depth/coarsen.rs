@@ -110,12 +110,14 @@ pub(super) fn build<P: Packing>(
 #[inline(never)]
 fn find_fine_spans<P: Packing>(finest: Fine<P>, hierarchy: &mut Hierarchy) {
     let is_active = |index| at(finest.packed, index) != 0.0;
-    find_spans(finest.grid, hierarchy.spans_mut(0), is_active, |index| finest.is_unit(index));
+    let are_unit = |index| finest.are_unit(index);
+    find_spans(finest.grid, hierarchy.spans_mut(0), is_active, |index| finest.is_unit(index), are_unit);
 }
 
 fn find_coarse_spans(coarse: Coarse, spans: &mut [f32]) {
     let is_active = |index| strength(&coarse, index) > 0.0;
-    find_spans(coarse.grid, spans, is_active, |index| coarse.is_unit(index));
+    let are_unit = |index| coarse.are_unit(index);
+    find_spans(coarse.grid, spans, is_active, |index| coarse.is_unit(index), are_unit);
 }
 
 /// The diagonal of a pixel's equation; zero if it has none.
@@ -126,19 +128,27 @@ fn strength<O: Operator>(operator: &O, index: usize) -> f32 {
         + operator.mass(index)
 }
 
-/// The span of every row.
+/// Pixels of a row that are looked at together.
+const TOGETHER: usize = 16;
+
+/// The span of every row; `are_unit` may say of the [`TOGETHER`] pixels from an index on that all are unit.
 fn find_spans(
     grid: Grid,
     spans: &mut [f32],
     is_active: impl Fn(usize) -> bool,
     is_unit: impl Fn(usize) -> bool,
+    are_unit: impl Fn(usize) -> bool,
 ) {
     for y in 0..grid.height {
         let start = grid.start(y);
         let first = (0..grid.width).find(|&x| is_active(start + x)).unwrap_or(grid.width);
         let last = (first..grid.width).rfind(|&x| is_active(start + x)).map_or(first, |x| x + 1);
-        let (mut best, mut from) = ([first, first], first);
-        for x in first..=last {
+        let (mut best, mut from, mut x) = ([first, first], first, first);
+        while x <= last {
+            if x + TOGETHER <= last && are_unit(start + x) {
+                x += TOGETHER;
+                continue;
+            }
             if x == last || !is_unit(start + x) {
                 let [a, b] = best;
                 if x - from > b - a {
@@ -146,6 +156,7 @@ fn find_spans(
                 }
                 from = x + 1;
             }
+            x += 1;
         }
         Span { active: [first, last], unit: best }.store(spans, y);
     }
@@ -157,8 +168,12 @@ fn attach_strays<A: Attachable>(target: &mut A, spans: &[f32]) -> bool {
     let grid = target.view().grid();
     let mut strays = 0_usize;
     for y in (0..grid.height).step_by(2) {
-        let [from, to] = Span::load(spans, y, grid.width).unit;
-        for x in (0..grid.width).step_by(2) {
+        let Span { active: [first, last], unit: [from, to] } = Span::load(spans, y, grid.width);
+        // Below the last row there is none, and no span of it.
+        let below = (y + 1 < grid.height).then(|| Span::load(spans, y + 1, grid.width).active);
+        let [first_below, last_below] = below.unwrap_or([first, last]);
+        let (first, last) = (first.min(first_below) & !1, last.max(last_below));
+        for x in (first..last).step_by(2) {
             if x >= from && x < to {
                 continue;
             }
@@ -178,7 +193,8 @@ fn attach_strays<A: Attachable>(target: &mut A, spans: &[f32]) -> bool {
         return false;
     }
     for y in 0..grid.height {
-        for x in 0..grid.width {
+        let Span { active: [first, last], unit: [from, to] } = Span::load(spans, y, grid.width);
+        for x in (first..from).chain(to..last) {
             let index = grid.start(y) + x;
             let attachment = better_block(&target.view(), index, x, y);
             if let Some(attachment) = attachment {
@@ -372,6 +388,24 @@ impl<P: Packing> Fine<'_, P> {
             .iter()
             .all(|&index| at(self.packed, index) == 1.0)
     }
+
+    /// Whether all of the pixels from `index` on are.
+    #[inline(always)]
+    fn are_unit(&self, index: usize) -> bool {
+        let stride = self.grid.stride();
+        are_one(self.packed, index - stride)
+            && are_one(self.packed, index)
+            && are_one(self.packed, index + stride)
+    }
+}
+
+/// Whether [`TOGETHER`] numbers from `index` on, and the one before and the one behind, are one.
+#[inline(always)]
+fn are_one(array: &[f32], index: usize) -> bool {
+    let numbers = array.get(index - 1..).and_then(|rest| rest.first_chunk::<{ TOGETHER + 2 }>());
+    numbers.is_some_and(|numbers| {
+        numbers.iter().fold(0, |others, number| others | (number.to_bits() ^ 1.0_f32.to_bits())) == 0
+    })
 }
 
 impl Coarse<'_> {
@@ -385,5 +419,17 @@ impl Coarse<'_> {
             && [index, index - 1, index + 1, index - stride, index + stride]
                 .iter()
                 .all(|&index| self.attachment(index) == Attachment::Own)
+    }
+
+    /// Whether all of the pixels from `index` on are, by a sufficient condition.
+    #[inline(always)]
+    fn are_unit(&self, index: usize) -> bool {
+        let stride = self.grid.stride();
+        let edges = |index| are_one(self.east, index) && are_one(self.south, index);
+        let mass = self.mass.get(index..).and_then(|rest| rest.first_chunk::<TOGETHER>());
+        edges(index - stride)
+            && edges(index)
+            && edges(index + stride)
+            && mass.is_some_and(|mass| mass.iter().all(|&mass| mass == 0.0))
     }
 }

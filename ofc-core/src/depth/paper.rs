@@ -8,6 +8,11 @@ use super::poisson::{Answer, Job};
 use super::{DepthError, DepthResult};
 
 pub(super) fn integrate(mut job: Job) -> Answer {
+    if let Some(along) = job.rectangle_along()
+        && let Some(right) = job.read_rectangle()
+    {
+        return job.integrate_rectangle(along, &right);
+    }
     let [masked, usable] = job.read();
     if usable == 0 {
         return Some(Err(DepthError::Empty));

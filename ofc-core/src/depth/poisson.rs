@@ -31,6 +31,11 @@ pub(super) fn pack(value: f32) -> f32 {
 }
 
 pub(super) fn integrate(mut job: Job) -> Answer {
+    if let Some(along) = job.rectangle_along()
+        && let Some(right) = job.read_rectangle()
+    {
+        return job.integrate_rectangle(along, &right);
+    }
     let [masked, usable] = job.read();
     if usable == 0 {
         return Some(Err(DepthError::Empty));
@@ -66,9 +71,6 @@ impl Job<'_> {
     /// `converged` says whether all went well until now.
     #[inline(never)]
     pub fn depth(mut self, so_far: DepthResult, converged: bool) -> Answer {
-        if let Some(along) = self.is_direct() {
-            return self.rectangle(along, so_far, converged);
-        }
         let params = self.params;
         let packing = Signed { mass: params.prior_weight as f32 };
         let anchored = params.prior_weight > 0.0 && self.input.prior.is_some();
@@ -151,7 +153,7 @@ impl Job<'_> {
         for y in 0..grid.height {
             let [constant, linear, square] = trend.depth(y);
             let row = output.row_mut(y);
-            for (x, z) in (0_u32..).zip(row.iter_mut()) {
+            for (x, z) in (0_i32..).zip(row.iter_mut()) {
                 let x = f64::from(x);
                 *z = (f64::from(*z) + (constant + x * (linear + x * square))) as f32;
             }

@@ -7,12 +7,11 @@
 use super::cosine_transform::{CosineTransform, Rows};
 use super::fourier::Lengths;
 use super::grid::{FineArrays, Grid, Parts};
-use super::operator::at;
+use super::input::SlopeRow;
 use super::poisson::{Answer, Job, NO_DEPTH};
-use super::regions::sum;
 use super::sweep::{Buffers, dot};
-use super::trend::Trend;
-use super::{DepthResult, Method, tridiagonal};
+use super::trend::{Fit, Trend};
+use super::{DepthError, DepthResult, Method, tridiagonal};
 use libm::sqrt;
 
 /// A residual of this part of the depth is what f32 leaves, and no worse than what was asked for.
@@ -25,36 +24,102 @@ pub(super) enum Along {
     Rows,
 }
 
+/// What is known once the right side stands.
+pub(super) struct RightSide {
+    trend: Trend,
+    /// The squared norm of what it would be with the trend.
+    squared: f64,
+    /// Pixels of the mask and usable ones.
+    counts: [usize; 2],
+}
+
 impl Job<'_> {
-    /// How to solve directly, if all weights are one, there is no prior, and the height or the width has no prime factor
-    /// above 7.
-    pub fn is_direct(&self) -> Option<Along> {
-        let Parts { grid, fine, hierarchy, .. } = &self.parts;
-        let anchored = self.params.prior_weight > 0.0 && self.input.prior.is_some();
-        if anchored || (0..grid.height).any(|y| !is_one(grid.row(fine.weights, y))) {
-            return None;
+    /// How to solve directly, if there is no prior, and the height or the width has no prime factor above 7.
+    pub fn rectangle_along(&self) -> Option<Along> {
+        let Parts { grid, hierarchy, .. } = &self.parts;
+        let fits = |n| {
+            let len = CosineTransform::workspace_len(n);
+            len <= hierarchy.coarse.len() && Lengths::new(n).is_some()
+        };
+        if self.params.prior_weight > 0.0 && self.input.prior.is_some() {
+            None
+        } else if fits(grid.height) {
+            Some(Along::Columns)
+        } else {
+            fits(grid.width).then_some(Along::Rows)
         }
-        let fits =
-            |n| Lengths::new(n).is_some() && CosineTransform::workspace_len(n) <= hierarchy.coarse.len();
-        if fits(grid.height) { Some(Along::Columns) } else { fits(grid.width).then_some(Along::Rows) }
     }
 
-    /// As [`depth`](Self::depth), directly.
+    /// Writes the right side, less the trend, into the residual; `None` if a weight is not one.
     #[inline(never)]
-    pub fn rectangle(mut self, along: Along, so_far: DepthResult, converged: bool) -> Answer {
+    pub fn read_rectangle(&mut self) -> Option<RightSide> {
+        let Parts { grid, fine, buffers, .. } = &mut self.parts;
+        let min_n3 = self.params.min_n3 as f32;
+        let mut buffers = Buffers::new(buffers);
+        let [p, before, current, next] = buffers.cut(grid.width);
+        let root = grid.row_mut(fine.weights, 0);
+        // In the paper's rectangle everybody has weight one, and slopes of unusable pixels are zero already.
+        let all = self.params.method == Method::Paper;
+        let mut read = |y: usize, p: &mut [f32], q: &mut [f32]| {
+            let counts = self.input.read(y, min_n3, &mut SlopeRow { p, q, root });
+            if all {
+                root.fill(1.0);
+            }
+            is_one(root).then_some(counts)
+        };
+        let mut fit = Fit::new(grid);
+        for y in Fit::rows(grid) {
+            read(y, p, current)?;
+            fit.add(y, |_| true, p, current);
+        }
+        let trend = fit.trend();
+        let last = grid.height - 1;
+        let (mut squared, mut counts) = (0.0, [0, 0]);
+        let mut ring = [before, current, next];
+        for y in 0..=grid.height {
+            let [before, current, next] = &mut ring;
+            if y < grid.height {
+                for (sum, count) in counts.iter_mut().zip(read(y, p, next)?) {
+                    *sum += count;
+                }
+                differ_along(p, grid.row_mut(fine.residual, y));
+            }
+            if let Some(y) = y.checked_sub(1) {
+                let out = grid.row_mut(fine.residual, y);
+                // The rise of an edge that is not there is zero.
+                match (y == 0, y == last) {
+                    (true, true) => {}
+                    (true, false) => add_half(current, next, [1.0, 1.0], out),
+                    (false, false) => add_half(before, next, [-1.0, 1.0], out),
+                    (false, true) => add_half(before, current, [-1.0, -1.0], out),
+                }
+                squared += dot(out, out);
+                subtract_trend(&trend, y, last, out);
+            }
+            ring.rotate_left(1);
+        }
+        Some(RightSide { trend, squared, counts })
+    }
+
+    /// From the right side to the answer.
+    #[inline(never)]
+    pub fn integrate_rectangle(mut self, along: Along, right: &RightSide) -> Answer {
+        let [masked, usable] = right.counts;
+        if usable == 0 {
+            return Some(Err(DepthError::Empty));
+        }
         let Parts { grid, fine, hierarchy, .. } = &mut self.parts;
         let grid = *grid;
-        let trend = Trend::fit(&grid, fine.weights, fine.correction, fine.direction);
-        let squared = fill(&grid, &trend, fine.correction, fine.direction, fine.residual);
         solve(&grid, along, fine, hierarchy.coarse)?;
-        let Remainder { residual, depth } = self.finish_rectangle(&trend);
-        let (residual, norm) = (sqrt(residual), sqrt(squared));
-        let reached = residual <= (self.params.tolerance * norm).max(ROUNDING * sqrt(depth));
+        let Remainder { residual, depth } = self.finish_rectangle(&right.trend);
+        let (residual, norm) = (sqrt(residual), sqrt(right.squared));
         Some(Ok(DepthResult {
-            converged: converged && reached,
+            converged: residual <= (self.params.tolerance * norm).max(ROUNDING * sqrt(depth)),
+            cycles: 0,
             residual: if norm > 0.0 { residual / norm } else { 0.0 },
             regions: 1,
-            ..so_far
+            pixels: masked,
+            excluded: masked - usable,
         }))
     }
 
@@ -64,41 +129,41 @@ impl Job<'_> {
         let Parts { grid, fine, buffers, .. } = &mut self.parts;
         let mut buffers = Buffers::new(buffers);
         let [buffer, ..] = buffers.cut(grid.width);
-        let mut remainder = Remainder::default();
+        let mask = self.input.mask.filter(|_| self.params.method == Method::Paper);
         let (mut total, mut count) = (0.0, 0.0);
-        let mask = if self.params.method == Method::Paper { self.input.mask } else { None };
+        for y in 0..grid.height {
+            let [constant, linear, square] = trend.depth(y);
+            if let Some(mask) = mask {
+                let row = (0_i32..).zip(grid.row(fine.direction, y)).zip(mask.row(y));
+                for ((x, &z), _) in row.filter(|&(_, &m)| m != 0) {
+                    let x = f64::from(x);
+                    total += f64::from(z) + (constant + x * (linear + x * square));
+                    count += 1.0;
+                }
+            } else {
+                // All that has a mean is the trend; sums of x and of its square along the row are known.
+                let n = grid.width as f64;
+                let (once, twice) = (n * (n - 1.0) / 2.0, n * (n - 1.0) * (2.0 * n - 1.0) / 6.0);
+                total += n * constant + once * linear + twice * square;
+                count += n;
+            }
+        }
+        let (mean, pitch) = (if count > 0.0 { total / count } else { 0.0 }, self.params.pixel_pitch);
+        let mut remainder = Remainder::default();
         for y in 0..grid.height {
             let row = grid.row(fine.direction, y);
             left_over(grid, y, fine.direction, grid.row(fine.residual, y), buffer);
             remainder.residual += dot(buffer, buffer);
             remainder.depth += dot(row, row);
             let [constant, linear, square] = trend.depth(y);
-            if let Some(mask) = mask {
-                let inside = (0_u32..).zip(row).zip(mask.row(y)).filter(|&(_, &m)| m != 0);
-                for ((x, &z), _) in inside {
-                    let x = f64::from(x);
-                    total += f64::from(z) + (constant + x * (linear + x * square));
-                    count += 1.0;
-                }
-            } else {
-                // Sums of x and of its square along the row.
-                let n = grid.width as f64;
-                let (once, twice) = (n * (n - 1.0) / 2.0, n * (n - 1.0) * (2.0 * n - 1.0) / 6.0);
-                total += sum(row) + (n * constant + once * linear + twice * square);
-                count += n;
-            }
-        }
-        let (mean, pitch) = (if count > 0.0 { total / count } else { 0.0 }, self.params.pixel_pitch);
-        for y in 0..grid.height {
-            let [constant, linear, square] = trend.depth(y);
             let constant = constant - mean;
-            let row = self.output.row_mut(y);
-            for ((x, out), &z) in (0_u32..).zip(row.iter_mut()).zip(grid.row(fine.direction, y)) {
+            let out_row = self.output.row_mut(y);
+            for ((x, out), &z) in (0_i32..).zip(out_row.iter_mut()).zip(row) {
                 let x = f64::from(x);
                 *out = ((f64::from(z) + (constant + x * (linear + x * square))) * pitch) as f32;
             }
             if let Some(mask) = mask {
-                for (out, _) in row.iter_mut().zip(mask.row(y)).filter(|&(_, &m)| m == 0) {
+                for (out, _) in out_row.iter_mut().zip(mask.row(y)).filter(|&(_, &m)| m == 0) {
                     *out = NO_DEPTH;
                 }
             }
@@ -119,44 +184,27 @@ fn is_one(row: &[f32]) -> bool {
     row.iter().fold(0, |others, weight| others | (weight.to_bits() ^ 1.0_f32.to_bits())) == 0
 }
 
-/// Writes the right side, less what the trend asks for; returns the squared norm of all of it.
-///
-/// Inside, the rises of the two edges of a pixel differ by half the difference of its neighbours' slopes.
-#[inline(never)]
-fn fill(grid: &Grid, trend: &Trend, p: &[f32], q: &[f32], right: &mut [f32]) -> f64 {
-    let last = grid.height - 1;
-    let mut squared = 0.0;
-    for y in 0..grid.height {
-        let out = grid.row_mut(right, y);
-        differ_along(grid.row(p, y), out);
-        if last > 0 {
-            // The rise of an edge that is not there is zero.
-            let above = if y == 0 { 0.5 } else { -0.5 };
-            let below = if y == last { -0.5 } else { 0.5 };
-            let rows = grid.row(q, y.saturating_sub(1)).iter().zip(grid.row(q, last.min(y + 1)));
-            for (out, (&q_above, &q_below)) in out.iter_mut().zip(rows) {
-                *out += below * q_below + above * q_above;
-            }
-        }
-        squared += dot(out, out);
-        subtract_trend(trend, y, last, out);
-    }
-    squared
-}
-
-/// The rise of the edge to the left of each pixel less that of the edge to its right.
+/// The rise of the edge to the left of each pixel less that of the edge to its right: half the difference of its
+/// neighbours' slopes, but at the ends.
 fn differ_along(p: &[f32], out: &mut [f32]) {
-    let [before @ .., second_last, last] = p else {
+    let ([first, second, after @ ..], [before @ .., second_last, last]) = (p, p) else {
         out.fill(0.0);
         return;
     };
-    let [first, second, after @ ..] = p else { return };
     if let [out_first, out @ .., out_last] = out {
         *out_first = -0.5 * (first + second);
         *out_last = 0.5 * (second_last + last);
         for ((out, &l), &r) in out.iter_mut().zip(before).zip(after) {
             *out = 0.5 * (l - r);
         }
+    }
+}
+
+/// Adds half of two rows.
+#[inline(always)]
+fn add_half(a: &[f32], b: &[f32], [sign_a, sign_b]: [f32; 2], out: &mut [f32]) {
+    for ((out, &a), &b) in out.iter_mut().zip(a).zip(b) {
+        *out += 0.5 * (sign_b * b + sign_a * a);
     }
 }
 
@@ -177,7 +225,7 @@ fn subtract_trend(trend: &Trend, y: usize, last: usize, out: &mut [f32]) {
         constant -= pp;
     }
     let (constant, linear) = (constant as f32, linear as f32);
-    for (x, out) in out.iter_mut().enumerate() {
+    for (x, out) in (0_i32..).zip(out) {
         *out -= constant + linear * x as f32;
     }
 }
@@ -213,11 +261,20 @@ fn solve(grid: &Grid, along: Along, fine: &mut FineArrays, workspace: &mut [f32]
     Some(())
 }
 
+/// Columns that are turned together, so that whole cache lines are read.
+const BAND: usize = 16;
+
 /// Writes the columns of a picture of this width and height as rows.
 fn turn(from: &Rows<&[f32]>, [width, height]: [usize; 2], to: &mut Rows<&mut [f32]>) {
-    for (x, row) in to.data.chunks_mut(to.stride.max(1)).take(width).enumerate() {
-        for (out, from) in row.iter_mut().zip(from.data.chunks(from.stride.max(1))).take(height) {
-            *out = at(from, x);
+    let bands = to.data.chunks_mut((BAND * to.stride).max(1));
+    for (x, band) in (0..width).step_by(BAND).zip(bands) {
+        for (y, from) in from.data.chunks(from.stride.max(1)).take(height).enumerate() {
+            let columns = from.get(x..width.min(x + BAND)).unwrap_or_default();
+            for (row, &value) in band.chunks_mut(to.stride.max(1)).zip(columns) {
+                if let Some(slot) = row.get_mut(y) {
+                    *slot = value;
+                }
+            }
         }
     }
 }

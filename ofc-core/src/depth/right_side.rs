@@ -48,7 +48,8 @@ pub(super) fn fill<O: Operator>(
         let [[p0, pp], [q0, qp]] = trend.slopes(y as f64);
         for (array, start, slope) in [(&mut *p, p0, pp), (&mut *q, q0, qp)] {
             let (start, slope) = (start as f32, slope as f32);
-            for (x, value) in grid.row_mut(array, y).iter_mut().enumerate() {
+            // 32 bits with a sign are what converts quickly.
+            for (x, value) in (0_i32..).zip(grid.row_mut(array, y)) {
                 *value -= start + slope * x as f32;
             }
         }
@@ -105,6 +106,7 @@ fn segment<C: Coefficients>(
     let ([p_left, p, p_right], [q_above, q, q_below]) = (slopes.p, slopes.q);
     let [p_trend, pp] = trend.p;
     let [above_trend, below_trend, qp] = trend.q;
+    let first = i32::try_from(from).unwrap_or(0);
     for (i, ((out, whole), energy)) in out.iter_mut().zip(whole).zip(energies).enumerate() {
         let [wl, wr, wu, wd] = coefficients.edges(i);
         let left = 0.5 * (at(p_left, i) + at(p, i));
@@ -114,7 +116,7 @@ fn segment<C: Coefficients>(
         *out = (wl * left - wr * right) + (wd * below - wu * above);
         // Every edge once: the ones to the right and above.
         *energy = wr * right * right + wu * above * above;
-        let x = (from + i) as f32;
+        let x = (first + i as i32) as f32;
         let (left_trend, across) = (p_trend + pp * x, qp * x);
         *whole = *out
             + ((wl * left_trend - wr * (left_trend + pp))

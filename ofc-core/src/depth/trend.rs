@@ -28,26 +28,54 @@ struct Moments {
     right: [[f64; 3]; 2],
 }
 
+/// A fit in the making.
+pub(super) struct Fit {
+    middle: [f64; 2],
+    unit: f64,
+    moments: Moments,
+}
+
+impl Fit {
+    pub fn new(grid: &Grid) -> Self {
+        let middle = [(grid.width - 1) as f64 / 2.0, (grid.height - 1) as f64 / 2.0];
+        Self { middle, unit: middle[0].max(middle[1]).max(1.0), moments: Moments::default() }
+    }
+
+    /// The rows to add.
+    pub fn rows(grid: &Grid) -> impl Iterator<Item = usize> + use<> {
+        (0..grid.height).step_by(grid.height.div_ceil(SAMPLED_ROWS).max(1))
+    }
+
+    /// Adds the slopes `p`, `q` of the pixels of row `y` that count.
+    #[inline(always)]
+    pub fn add(&mut self, y: usize, counts: impl Fn(usize) -> bool, p: &[f32], q: &[f32]) {
+        let v = (self.middle[1] - y as f64) / self.unit;
+        for (x, (&p, &q)) in p.iter().zip(q).enumerate() {
+            if counts(x) {
+                let basis = [1.0, (x as f64 - self.middle[0]) / self.unit, v];
+                self.moments.add(basis, [f64::from(p), f64::from(q)]);
+            }
+        }
+    }
+
+    pub fn trend(&self) -> Trend {
+        let [p, q] = self.moments.solve();
+        let ([p, pp, pq], [q, qp, qq]) = (p, q);
+        let (unit, middle) = (self.unit, self.middle);
+        Trend { p, q, pp: pp / unit, pq: 0.5 * (pq + qp) / unit, qq: qq / unit, middle }
+    }
+}
+
 impl Trend {
     /// Fits the slopes `p`, `q` (in grid layout) of pixels whose weight `packed` is not zero.
     #[inline(never)]
     pub fn fit(grid: &Grid, packed: &[f32], p: &[f32], q: &[f32]) -> Self {
-        let middle = [(grid.width - 1) as f64 / 2.0, (grid.height - 1) as f64 / 2.0];
-        let unit = middle[0].max(middle[1]).max(1.0);
-        let mut moments = Moments::default();
-        for y in (0..grid.height).step_by(grid.height.div_ceil(SAMPLED_ROWS).max(1)) {
-            let v = (middle[1] - y as f64) / unit;
-            let (p, q) = (grid.row(p, y), grid.row(q, y));
-            for (x, &weight) in grid.row(packed, y).iter().enumerate() {
-                if weight != 0.0 {
-                    let basis = [1.0, (x as f64 - middle[0]) / unit, v];
-                    moments.add(basis, [f64::from(at(p, x)), f64::from(at(q, x))]);
-                }
-            }
+        let mut fit = Fit::new(grid);
+        for y in Fit::rows(grid) {
+            let weights = grid.row(packed, y);
+            fit.add(y, |x| at(weights, x) != 0.0, grid.row(p, y), grid.row(q, y));
         }
-        let [p, q] = moments.solve();
-        let ([p, pp, pq], [q, qp, qq]) = (p, q);
-        Self { p, q, pp: pp / unit, pq: 0.5 * (pq + qp) / unit, qq: qq / unit, middle }
+        fit.trend()
     }
 
     /// Its p and q along row `y`, each the value at column 0 and the slope.

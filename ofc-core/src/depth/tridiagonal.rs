@@ -27,7 +27,7 @@ pub(super) fn gap(k: usize, n: usize) -> f64 {
 }
 
 /// Solves in place but for the factor r: row x holds column x of every frequency below `n`, `width` rows. Frequency zero
-/// (which has no such factor) gets the solution without mean slope.
+/// (which has no such factor) gets the solution without mean.
 pub(super) fn solve(spectrum: &mut Rows<&mut [f32]>, width: usize, n: usize) {
     let stride = spectrum.stride;
     let Some(data) = spectrum.data.get_mut(..width * stride) else { return };
@@ -37,14 +37,21 @@ pub(super) fn solve(spectrum: &mut Rows<&mut [f32]>, width: usize, n: usize) {
     }
 }
 
-/// Frequency zero: differences are sums of right sides, and values are sums of differences.
+/// Frequency zero: differences are sums of right sides, and values are sums of differences, free of their mean.
 fn sum_twice(data: &mut [f32], stride: usize) {
     let first = |row: &[f32]| row.first().copied().map_or(0.0, f64::from);
     let rows = || data.chunks_exact(stride.max(1));
-    let mean = rows().map(first).sum::<f64>() / rows().len().max(1) as f64;
-    let (mut value, mut difference) = (0.0, 0.0);
+    let mean = |sum: f64| sum / rows().len().max(1) as f64;
+    let surplus = mean(rows().map(first).sum());
+    let (mut value, mut difference, mut sum) = (0.0, 0.0, 0.0);
+    for row in rows() {
+        sum += value;
+        difference -= first(row) - surplus;
+        value += difference;
+    }
+    (value, difference) = (-mean(sum), 0.0);
     for row in data.chunks_exact_mut(stride.max(1)) {
-        difference -= first(row) - mean;
+        difference -= first(row) - surplus;
         if let Some(slot) = row.first_mut() {
             *slot = value as f32;
         }
@@ -55,6 +62,7 @@ fn sum_twice(data: &mut [f32], stride: usize) {
 type Block = [f32; BLOCK];
 
 /// Frequencies `k` to `k + BLOCK`, as far as there are.
+#[inline(never)]
 fn solve_block(data: &mut [f32], stride: usize, k: usize, n: usize) {
     let width = data.len() / stride.max(1);
     let end = n.min(k + BLOCK);
@@ -74,8 +82,8 @@ fn solve_block(data: &mut [f32], stride: usize, k: usize, n: usize) {
     let rows = data.chunks_exact(stride.max(1));
     let mut value = if near_rows < width {
         // Not `take`: its way back slices with a check.
-        let near = data.get(..near_rows * stride).unwrap_or_default().chunks_exact(stride.max(1)).rev();
-        near.fold([0.0; BLOCK], |sum, row| next(load(row, k, end), sum))
+        let near = data.get(..near_rows * stride).unwrap_or_default().chunks_exact(stride.max(1));
+        near.rev().fold([0.0; BLOCK], |sum, row| next(load(row, k, end), sum))
     } else {
         let near = rows.clone().rev().fold([0.0; BLOCK], |sum, row| next(load(row, k, end), sum));
         let far = rows.fold([0.0; BLOCK], |sum, row| next(load(row, k, end), sum));
