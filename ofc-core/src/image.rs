@@ -5,6 +5,7 @@
 //! machine's byte order.
 
 use crate::pixels::Pixels;
+use crate::shadows::Shadows;
 
 /// The largest number of pixels in a picture, 2^31 - 1: sums and indices stay far from their limits.
 pub const MAX_PIXELS: usize = i32::MAX as usize;
@@ -398,13 +399,26 @@ pub fn for_each_bit(mut bits: u64, mut visit: impl FnMut(usize)) {
 pub struct Usable {
     /// A pixel is saturated if any of its channels is at or above this.
     pub saturation: f32,
+    /// Colors that a light does not reach.
+    pub shadows: Shadows,
 }
 
 impl Usable {
+    /// Without shadows.
+    #[must_use]
+    pub const fn below(saturation: f32) -> Self {
+        Self { saturation, shadows: Shadows::NONE }
+    }
+
     /// The bits of `window`'s usable pixels.
     #[must_use]
-    #[inline(never)]
     pub fn bits(&self, window: &Window) -> u64 {
+        self.shadows.lit(window, self.exposed(window))
+    }
+
+    /// Those with shaded ones among them.
+    #[inline(never)]
+    fn exposed(&self, window: &Window) -> u64 {
         // Floats are in the order of their bits as integers with a sign, but for negative ones, and what is not finite
         // has the largest bits of its sign.
         const NEGATIVE_INFINITY: u32 = f32::NEG_INFINITY.to_bits();
@@ -431,14 +445,16 @@ impl Usable {
 
     /// Adds the pixels of one window to a census, and returns the bits of the usable ones.
     pub fn count_window(&self, window: &Window, census: &mut Census) -> u64 {
-        let usable = self.bits(window);
+        let exposed = self.exposed(window);
+        let usable = self.shadows.lit(window, exposed);
         let finite = window.masked & window.bits(|r, g, b| r.is_finite() && g.is_finite() && b.is_finite());
         let dark = finite & window.bits(|r, g, b| r <= 0.0 && g <= 0.0 && b <= 0.0);
         census.usable += usable.count_ones() as usize;
         census.masked_out += window.len - window.masked.count_ones() as usize;
         census.non_finite += (window.masked & !finite).count_ones() as usize;
         census.dark += dark.count_ones() as usize;
-        census.saturated += (finite & !dark & !usable).count_ones() as usize;
+        census.saturated += (finite & !dark & !exposed).count_ones() as usize;
+        census.shaded += (exposed & !usable).count_ones() as usize;
         for_each_bit(usable, |i| {
             for value in window.pixel(i) {
                 census.largest = census.largest.max(value.abs());
@@ -461,6 +477,8 @@ pub struct Census {
     pub dark: usize,
     /// At or above the saturation threshold in a channel.
     pub saturated: usize,
+    /// In the shadow of one of the lights, see [`crate::shadows`].
+    pub shaded: usize,
     /// The largest absolute channel value of the usable pixels.
     pub largest: f32,
 }
@@ -485,7 +503,7 @@ mod tests {
                 for channel in &mut window.color {
                     channel.fill_with(|| values[rng.below(values.len() as u32) as usize]);
                 }
-                let bits = Usable { saturation }.bits(&window);
+                let bits = Usable::below(saturation).bits(&window);
                 for i in 0..WINDOW {
                     let color = window.pixel(i);
                     let expected = window.masked >> i & 1 == 1

@@ -34,6 +34,7 @@ pub mod render;
 pub mod rng;
 pub mod segment;
 pub mod select;
+pub mod shadows;
 pub mod slant;
 pub mod solve;
 pub mod stream;

@@ -16,6 +16,7 @@ use crate::mat3;
 use crate::orientation::{self, Orientation, RANK_THRESHOLD};
 use crate::pixels::Pixels;
 use crate::rank::{self, Rank};
+use crate::shadows;
 use crate::tilt::{TiltEstimator, Tilts};
 use heapless::Vec;
 use libm::{atan2, hypot};
@@ -42,6 +43,8 @@ pub struct Params {
     /// A pixel is saturated if a channel is at or above this; `None` for the largest value of the pixel type, and no
     /// limit for f32. Default `None`.
     pub saturation: Option<f32>,
+    /// Whether colors that a light does not reach are looked for and left out. Default true.
+    pub reject_shadows: bool,
     /// How F is oriented. Given tilts, and a picture that is too small for [`Road::Joint`], take the paper's road whatever
     /// this is. Default [`Road::Joint`].
     pub road: Road,
@@ -58,6 +61,7 @@ impl Default for Params {
         Self {
             lmeds: lmeds::Params::default(),
             saturation: None,
+            reject_shadows: true,
             road: Road::Joint,
             tilts: TiltEstimator::Pentland,
             rank_threshold: RANK_THRESHOLD,
@@ -82,7 +86,7 @@ impl Params {
     /// Which pixels of `image` can be used.
     #[must_use]
     pub fn usable(&self, image: &Image) -> Usable {
-        Usable { saturation: self.saturation.unwrap_or(image.sample().saturation()) }
+        Usable::below(self.saturation.unwrap_or(image.sample().saturation()))
     }
 }
 
@@ -248,7 +252,7 @@ impl Solution {
         self.outcome = Outcome::RankDeficient;
         self.census = census;
         self.color_deviations = [0.0; 3];
-        self.inliers = Inliers::none(self.inliers.usable);
+        self.inliers = Inliers::none(Usable::below(self.inliers.usable.saturation));
         self.inlier_count = 0;
         (self.rank, self.fit, self.norm_location) = (None, None, None);
         (self.ellipsoid, self.tilts, self.joint, self.choice) = (None, None, None, None);
@@ -287,6 +291,9 @@ impl Solution {
         params: &Params,
         workspace: &mut [f32],
     ) -> Result<(), FitError> {
+        if fit.is_ok() && params.reject_shadows {
+            self.leave_out_shadows(pixels, params, workspace);
+        }
         let usable = self.inliers.usable;
         let fit = match (fit, &self.fit) {
             (Ok(()), Some(fit)) => fit,
@@ -328,6 +335,33 @@ impl Solution {
         }
         self.outcome = Outcome::NoTilt;
         Ok(())
+    }
+
+    /// Looks for shadows, and fits anew without them.
+    #[inline(never)]
+    fn leave_out_shadows(&mut self, pixels: &impl Pixels, params: &Params, workspace: &mut [f32]) {
+        let (Some(fit), usable) = (&self.fit, self.inliers.usable) else { return };
+        let (count, lmeds) = (fit.usable, &params.lmeds);
+        let shadows =
+            shadows::find(pixels, usable, count, fit.band, fit.noise_deviation, lmeds.seed, workspace);
+        if !shadows.any() {
+            return;
+        }
+        let lit = Usable { shadows, ..usable };
+        let left = Inliers::all(lit).count(pixels);
+        let scale = lmeds::reciprocal_power_of_two(self.census.largest);
+        let scaled = fit.robust.map(|c| c / (scale * scale));
+        let mut refit = None;
+        let judged = lmeds::judge(pixels, lit, left, scale, Some(scaled), lmeds, workspace, &mut refit);
+        if judged.is_ok() && refit.is_some() && left >= lmeds::MIN_PIXELS {
+            self.fit = refit;
+            self.inliers.usable = lit;
+            // The pixels may be a sample of those that were counted.
+            let shaded =
+                (self.census.usable as u128 * (count - left) as u128 / count.max(1) as u128) as usize;
+            self.census.usable -= shaded;
+            self.census.shaded = shaded;
+        }
     }
 
     /// Ends with the choice of slants that is in its place.

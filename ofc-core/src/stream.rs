@@ -181,7 +181,7 @@ impl State {
     #[expect(clippy::inline_always, reason = "three kilobytes that should not be moved")]
     #[inline(always)]
     pub fn unchecked(width: usize, height: usize, format: Sample, params: Params) -> Self {
-        let usable = Usable { saturation: params.solve.saturation.unwrap_or(format.saturation()) };
+        let usable = Usable::below(params.solve.saturation.unwrap_or(format.saturation()));
         let lmeds = params.solve.lmeds;
         Self {
             params,

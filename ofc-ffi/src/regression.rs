@@ -106,7 +106,7 @@ pub unsafe extern "C" fn ofc_lmeds_fit(
         let (fit, inliers) = (Out::new(fit)?, Out::new(inliers)?);
         let [a, b, c, d, e] = picture.extents;
         disjoint(&[scratch, fit.extent, inliers.extent], &[a, b, c, d, e, params_extent])?;
-        let usable = Usable { saturation: saturation.unwrap_or(view.sample().saturation()) };
+        let usable = Usable::below(saturation.unwrap_or(view.sample().saturation()));
         // SAFETY: checked and disjoint.
         let result =
             lmeds::fit(view, usable, &params, unsafe { floats(workspace, need) }).map_err(of_fit_error)?;
@@ -281,7 +281,7 @@ pub(crate) fn accepted_by(
 ) -> Result<(Inliers, Extent), ofc_status> {
     if inliers.is_null() {
         let [own, ..] = picture.extents;
-        return Ok((Inliers::all(Usable { saturation: picture.view.sample().saturation() }), own));
+        return Ok((Inliers::all(Usable::below(picture.view.sample().saturation())), own));
     }
     input(inliers).map(|(test, extent)| (test.into_core(), extent))
 }

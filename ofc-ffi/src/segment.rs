@@ -192,7 +192,7 @@ pub unsafe extern "C" fn ofc_segment(
         let out = Out::new(count)?;
         let [a, b, c, d, e] = picture.extents;
         disjoint(&[scratch, labels_extent, regions_extent, out.extent], &[a, b, c, d, e, params_extent])?;
-        let usable = Usable { saturation: saturation.unwrap_or(view.sample().saturation()) };
+        let usable = Usable::below(saturation.unwrap_or(view.sample().saturation()));
         let colors_len = segment::colors_len(pixels);
         // SAFETY: checked and disjoint; the workspace holds three floats a pixel and then one integer a pixel.
         let (colors, queue, labels, regions) = unsafe {
@@ -295,7 +295,7 @@ pub unsafe extern "C" fn ofc_rank_patches(
         if !valid {
             return Err(OFC_STATUS_INVALID_PARAMETER);
         }
-        let usable = Usable { saturation: view.sample().saturation() };
+        let usable = Usable::below(view.sample().saturation());
         // SAFETY: checked and disjoint.
         let ranks = unsafe { output_slice(ranks, across * down) };
         patches::patches(view, usable, side, noise, ranks).map_err(|_| OFC_STATUS_INVALID_PARAMETER)?;

@@ -93,8 +93,10 @@ pub struct ofc_solve_params {
     /// How F is oriented, one of OFC_ROAD_*. Given tilts, and a picture that is too small for OFC_ROAD_JOINT, take the paper's
     /// road whatever this is; tilt_estimator and slant_fallback are for that road. Default OFC_ROAD_JOINT.
     pub road: ofc_road,
+    /// 0 leaves out colors that one of the lights does not reach, where such are found; 1 keeps them. Default 0.
+    pub keep_shadows: i32,
     /// Must be zero.
-    pub reserved: [u32; 5],
+    pub reserved: [u32; 4],
 }
 
 /// How sure the orientation of F is; all zero on the paper's road. Errors of C, which turn and bend normals as well, come on
@@ -167,8 +169,15 @@ unsafe impl Plain for ofc_solution {}
 
 impl ofc_solve_params {
     pub(crate) fn defaults() -> Self {
-        let Params { lmeds: _, saturation: _, road: _, tilts: _, rank_threshold, fallback: _ } =
-            Params::default();
+        let Params {
+            lmeds: _,
+            saturation: _,
+            reject_shadows: _,
+            road: _,
+            tilts: _,
+            rank_threshold,
+            fallback: _,
+        } = Params::default();
         Self {
             lmeds: ofc_lmeds_params::defaults(),
             rank_threshold,
@@ -176,13 +185,23 @@ impl ofc_solve_params {
             tilt_estimator: OFC_TILT_PENTLAND,
             slant_fallback: OFC_FALLBACK_LEAST_SQUARES,
             road: OFC_ROAD_JOINT,
-            reserved: [0; 5],
+            keep_shadows: 0,
+            reserved: [0; 4],
         }
     }
 
     pub(crate) fn check(self) -> Result<Params, ofc_status> {
-        let Self { lmeds, rank_threshold, tilt_rad, tilt_estimator, slant_fallback, road, reserved } = self;
-        if reserved != [0; 5] {
+        let Self {
+            lmeds,
+            rank_threshold,
+            tilt_rad,
+            tilt_estimator,
+            slant_fallback,
+            road,
+            keep_shadows,
+            reserved,
+        } = self;
+        if reserved != [0; 4] {
             return Err(OFC_STATUS_RESERVED_NOT_ZERO);
         }
         let (lmeds, saturation) = lmeds.check()?;
@@ -208,7 +227,12 @@ impl ofc_solve_params {
             OFC_ROAD_PAPER => Road::Paper,
             _ => return Err(OFC_STATUS_INVALID_PARAMETER),
         };
-        let params = Params { lmeds, saturation, road, tilts, rank_threshold, fallback };
+        let reject_shadows = match keep_shadows {
+            0 => true,
+            1 => false,
+            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
+        };
+        let params = Params { lmeds, saturation, reject_shadows, road, tilts, rank_threshold, fallback };
         if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
     }
 }

@@ -10,6 +10,7 @@ use ofc_core::location::Location;
 use ofc_core::mat3::Mat3;
 use ofc_core::orientation::Orientation;
 use ofc_core::regression::Estimate;
+use ofc_core::shadows::{Face, Shadows};
 use ofc_core::tilt::Tilts;
 use ofc_core::{ellipsoid::Ellipsoid, integrability::Integrability};
 
@@ -181,20 +182,26 @@ pub struct ofc_census {
     pub saturated: i32,
     /// NaN or infinite in a channel.
     pub non_finite: i32,
+    /// In the shadow of one of the lights.
+    pub shaded: i32,
     /// Largest absolute channel value of the usable pixels.
     pub largest: f32,
+    /// Zero.
+    pub reserved: u32,
 }
 
 impl From<Census> for ofc_census {
     fn from(census: Census) -> Self {
-        let Census { usable, masked_out, non_finite, dark, saturated, largest } = census;
+        let Census { usable, masked_out, non_finite, dark, saturated, shaded, largest } = census;
         Self {
             usable: count(usable),
             masked_out: count(masked_out),
             dark: count(dark),
             saturated: count(saturated),
+            shaded: count(shaded),
             non_finite: count(non_finite),
             largest,
+            reserved: 0,
         }
     }
 }
@@ -250,11 +257,16 @@ pub struct ofc_inliers {
     pub norm_low: f64,
     /// Largest accepted rho^T C rho.
     pub norm_high: f64,
+    /// Unit normals of up to three faces of the cone of colors, a row each; zero where there is none. Colors near a face, or
+    /// beyond it, are in the shadow of one light.
+    pub shadow_normal: [f64; 9],
+    /// The smallest accepted normal . rho of each.
+    pub shadow_least: [f64; 3],
 }
 
 impl From<Inliers> for ofc_inliers {
     fn from(inliers: Inliers) -> Self {
-        let Inliers { usable: Usable { saturation }, residual, norm } = inliers;
+        let Inliers { usable: Usable { saturation, shadows }, residual, norm } = inliers;
         Self {
             saturation: f64::from(saturation),
             residual_form: residual.form,
@@ -263,6 +275,8 @@ impl From<Inliers> for ofc_inliers {
             norm_form: norm.form,
             norm_low: norm.low,
             norm_high: norm.high,
+            shadow_normal: flat(&shadows.faces.map(|face| face.normal.map(f64::from))),
+            shadow_least: shadows.faces.map(|face| f64::from(face.least)),
         }
     }
 }
@@ -270,10 +284,25 @@ impl From<Inliers> for ofc_inliers {
 impl ofc_inliers {
     /// The core's twin. Any numbers are a valid test: comparisons with NaN hold for no pixel.
     pub(crate) fn into_core(self) -> Inliers {
-        let Self { saturation, residual_form, residual_low, residual_high, norm_form, norm_low, norm_high } =
-            self;
+        let Self {
+            saturation,
+            residual_form,
+            residual_low,
+            residual_high,
+            norm_form,
+            norm_low,
+            norm_high,
+            shadow_normal,
+            shadow_least,
+        } = self;
+        let mut shadows = Shadows::NONE;
+        for ((face, normal), least) in
+            shadows.faces.iter_mut().zip(shadow_normal.as_chunks::<3>().0).zip(shadow_least)
+        {
+            *face = Face { normal: normal.map(|x| x as f32), least: least as f32 };
+        }
         Inliers {
-            usable: Usable { saturation: saturation as f32 },
+            usable: Usable { saturation: saturation as f32, shadows },
             residual: Band { form: residual_form, low: residual_low, high: residual_high },
             norm: Band { form: norm_form, low: norm_low, high: norm_high },
         }

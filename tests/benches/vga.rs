@@ -71,7 +71,7 @@ fn segment_vga(bencher: Bencher) {
     let (mut labels, mut queue) = (vec![0; PIXELS], vec![0; PIXELS]);
     let mut colors = vec![0.0; segment::colors_len(PIXELS)];
     bencher.bench_local(|| {
-        let usable = Usable { saturation: 255.0 };
+        let usable = Usable::below(255.0);
         let image = black_box(&both).image();
         segment::segment(&image, usable, &params, &mut labels, &mut colors, &mut queue).expect("room for all")
     });

@@ -10,7 +10,7 @@ use ofc_tests::scene::{CLEAN, Scene, dot, lopsided};
 fn fit(scene: &Scene, method: Method) -> Result<lmeds::Fit, FitError> {
     let params = Params { method, ..Params::default() };
     let mut workspace = vec![f32::NAN; lmeds::workspace_len(scene.width * scene.height, params.sample_size)];
-    lmeds::fit(&scene.image(), Usable { saturation: f32::INFINITY }, &params, &mut workspace)
+    lmeds::fit(&scene.image(), Usable::below(f32::INFINITY), &params, &mut workspace)
 }
 
 /// Least squares for M z = 1 by Gauss-Jordan elimination of the normal equations: an oracle.

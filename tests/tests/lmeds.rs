@@ -12,7 +12,7 @@ use ofc_tests::tolerances::{
     STUDENT_QUANTILE,
 };
 
-const UNLIMITED: Usable = Usable { saturation: f32::INFINITY };
+const UNLIMITED: Usable = Usable::below(f32::INFINITY);
 
 fn fitted(scene: &Scene, params: &Params) -> Result<Fit, FitError> {
     let pixels = scene.width * scene.height;
@@ -337,7 +337,7 @@ fn the_pixels_left_out_are_counted() {
     let image = Image::interleaved(&bytes, 70, 30, 70 * 12, Sample::F32, Order::Rgb)
         .and_then(|image| image.with_mask(&mask, 70))
         .expect("sizes agree");
-    let census = Usable { saturation: 200.0 }.count(&image);
+    let census = Usable::below(200.0).count(&image);
     let (mut masked_out, mut non_finite, mut dark, mut saturated, mut usable) = (0, 0, 0, 0, 0);
     for (value, &mask) in values.iter().zip(&mask) {
         if mask == 0 {
@@ -368,7 +368,7 @@ fn too_few_dark_and_saturated_pictures_have_their_own_errors() {
     };
     let of = |scene: &Scene| {
         let mut workspace = vec![0.0; workspace_len(111, 10_000)];
-        fit(&scene.encode().image(), Usable { saturation: 250.0 }, &Params::default(), &mut workspace).err()
+        fit(&scene.encode().image(), Usable::below(250.0), &Params::default(), &mut workspace).err()
     };
     assert_eq!(of(&painted([0.0; 3])), Some(FitError::Dark));
     assert_eq!(of(&painted([100.0, 251.0, 3.0])), Some(FitError::Saturated));

@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 const ROUNDING: f64 = 1e-12;
 
 fn inliers(scene: &Scene) -> impl Fn(&Window) -> u64 {
-    let usable = Usable { saturation: scene.image().sample().saturation() };
+    let usable = Usable::below(scene.image().sample().saturation());
     move |window| usable.bits(window)
 }
 
@@ -26,7 +26,7 @@ fn fitted_root(scene: &Scene) -> Mat3 {
     let image = scene.image();
     let params = lmeds::Params::default();
     let mut workspace = vec![0.0; lmeds::workspace_len(scene.width * scene.height, params.sample_size)];
-    let usable = Usable { saturation: image.sample().saturation() };
+    let usable = Usable::below(image.sample().saturation());
     let fit = lmeds::fit(&image, usable, &params, &mut workspace).expect("a fit");
     ellipsoid::decompose(&fit.z()).expect("an ellipsoid").root
 }

@@ -77,7 +77,7 @@ fn noise_free_surfaces_come_back_with_true_tilts() {
             assert!(scene.colors.iter().filter(|c| c.iter().all(|&v| v > 0.0)).count() == lit_pixels);
             let encoded = scene.encode();
             let image = encoded.image();
-            let usable = Usable { saturation: f32::INFINITY };
+            let usable = Usable::below(f32::INFINITY);
             let mut workspace = vec![0.0; lmeds::workspace_len(110 * 90, 10_000)];
             let fit = lmeds::fit(&image, usable, &lmeds::Params::default(), &mut workspace).expect("a fit");
             let ellipsoid = ellipsoid::decompose(&fit.z()).expect("an ellipsoid");

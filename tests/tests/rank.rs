@@ -11,7 +11,7 @@ use ofc_tests::scene::{CLEAN, Light, PAPER, Scene, cap, lopsided};
 fn ranks(name: &str, image: &Image) -> Rank {
     let params = lmeds::Params::default();
     let mut workspace = vec![0.0; lmeds::workspace_len(image.width() * image.height(), params.sample_size)];
-    let usable = Usable { saturation: image.sample().saturation() };
+    let usable = Usable::below(image.sample().saturation());
     let fit = lmeds::fit(image, usable, &params, &mut workspace).ok();
     let all = Inliers::all(usable);
     let inliers = fit.map_or(all, |fit| Inliers { residual: fit.band, ..all });

@@ -24,7 +24,7 @@ fn run(image: &Image, params: &Params) -> (Vec<u16>, Regions) {
     let pixels = image.width() * image.height();
     let (mut labels, mut colors, mut queue) =
         (vec![77; pixels], vec![f32::NAN; colors_len(pixels)], vec![u32::MAX; pixels]);
-    let usable = Usable { saturation: image.sample().saturation() };
+    let usable = Usable::below(image.sample().saturation());
     let regions = segment(image, usable, params, &mut labels, &mut colors, &mut queue).expect("parameters");
     (labels, regions)
 }
@@ -136,7 +136,7 @@ fn patches_know_planes_and_cylinders() {
         .behind(&Scene::new(size, size, &CLEAN, cylinder))
         .behind(&Scene::new(size, size, &CLEAN, ball))
         .with_noise(0.2, 3);
-    let usable = Usable { saturation: f32::INFINITY };
+    let usable = Usable::below(f32::INFINITY);
     let mut ranks = vec![9; 36];
     assert_eq!(patches::shape(size, size, 16), [6, 6]);
     patches(&scene.image(), usable, 16, 0.2, &mut ranks).unwrap();
@@ -171,7 +171,7 @@ fn what_has_no_ellipsoid_has_no_region() {
 fn the_seed_fixes_everything_and_dirt_does_not_matter() {
     let (scene, _) = two_spheres(1.0, 2);
     let pixels = WIDTH * HEIGHT;
-    let usable = Usable { saturation: 255.0 };
+    let usable = Usable::below(255.0);
     let params = Params { seed: 3, ..Params::default() };
     let (labels, regions) = run(&scene.image(), &params);
     let (mut more, mut colors, mut queue) =
@@ -187,7 +187,7 @@ fn the_seed_fixes_everything_and_dirt_does_not_matter() {
 #[test]
 fn bad_input_is_refused_and_nothing_written() {
     let scene = Scene::new(32, 32, &CLEAN, cap(40.0, 15.0));
-    let usable = Usable { saturation: f32::INFINITY };
+    let usable = Usable::below(f32::INFINITY);
     let good = Params::default();
     let run = |params: &Params, labels_len, colors_len, queue_len| {
         let (mut labels, mut colors, mut queue) =

@@ -13,7 +13,7 @@ use ofc_tests::scene::{CLEAN, Matrix, PAPER, Scene, cap, dot, lopsided, median_e
 use std::f64::consts::FRAC_PI_2;
 
 fn inliers(window: &Window) -> u64 {
-    Usable { saturation: f32::INFINITY }.bits(window)
+    Usable::below(f32::INFINITY).bits(window)
 }
 
 /// Norms, cosines and tilts of the rows of F.
