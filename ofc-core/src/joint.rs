@@ -105,6 +105,11 @@ pub fn estimate(
         if let Some((form, rows)) = Integrable::of(&cells, &noise, &outward, best.rows, rest) {
             let information = search::hessian(&rows, |rows| form.cost(rows) + prior(rows));
             let spread = trace(&inverse(&information, 1.0 / LARGEST_VARIANCE));
+            #[cfg(feature = "dbg")]
+            {extern crate std; 
+            let simple = search::hessian(&rows, |rows| form.simple(rows));
+            let simple = trace(&inverse(&simple, 1.0 / LARGEST_VARIANCE));
+            std::println!("SCALE {} {} {} {:?}", 2 * cells.side(), libm::sqrt(spread * 2.0 / 3.0) * 57.3,libm::sqrt(simple * 2.0 / 3.0) * 57.3, rows);}
             if chosen.as_ref().is_none_or(|(.., least)| spread < *least) {
                 chosen = Some((form, rows, spread));
             }

@@ -6,8 +6,7 @@
 //! faces are looked for, among what the ellipsoid does not explain, and all colors near them are left out.
 //!
 //! A plane is a face where nearly all colors lie on one side of it, many more within the noise than right beside it, and a
-//! good part of these far from the ellipsoid: regular colors do not lie in planes, but those of two flat parts of a surface
-//! may, and obey the model.
+//! good part of these far from an ellipsoid that is fitted without them.
 //!
 //! # Reference
 //! Section 2 (shadows are outliers). M. A. Fischler, R. C. Bolles, "Random sample consensus", Commun. ACM 24, 1981.
@@ -26,7 +25,7 @@ pub const MAX_FACES: usize = 3;
 const SAMPLE: usize = 1024;
 
 /// Planes through two of them that are tried for each face.
-const TRIALS: usize = 160;
+const TRIALS: usize = 320;
 
 /// Colors within this many deviations of the noise lie in the plane.
 const NEAR: f32 = 2.0;
@@ -36,11 +35,12 @@ const BESIDE: f32 = 10.0;
 const BEYOND: f32 = 3.0;
 const MAX_BEYOND: f64 = 0.01;
 
-/// At least this share of all colors lie in a face, at least so many times as many as would by the density beside it, and
-/// at least this share of them are outliers.
+/// At least this share of all colors lie in a face, and at least so many times as many as would by the density beside it.
 const SMALLEST_SHARE: f64 = 0.02;
 const CONCENTRATION: f64 = 2.0;
-const SMALLEST_OUTLIERS: f64 = 0.2;
+
+/// At least this share of the colors of a face are outliers of an ellipsoid that was fitted without them.
+const SMALLEST_OUTLIERS: f64 = 0.08;
 
 /// Fewer outliers than this have no shadows.
 const SMALLEST_COUNT: usize = 16;
@@ -63,6 +63,12 @@ pub struct Face {
     pub least: f32,
 }
 
+impl Face {
+    fn lit(&self, window: &Window) -> u64 {
+        window.bits(|r, g, b| distance(self.normal, [r, g, b]) >= self.least)
+    }
+}
+
 /// The faces of the cone, as many as there are shadows of different lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shadows {
@@ -74,27 +80,53 @@ impl Shadows {
     /// No shadows.
     pub const NONE: Self = Self { faces: [Face { normal: [0.0; 3], least: 0.0 }; MAX_FACES] };
 
-    /// Whether there are any.
-    #[must_use]
-    pub fn any(&self) -> bool {
-        *self != Self::NONE
-    }
-
     /// Which of the window's colors `among` these all three lights reach.
     #[must_use]
     pub fn lit(&self, window: &Window, among: u64) -> u64 {
         let mut lit = among;
-        for Face { normal: [x, y, z], least } in self.faces {
-            if [x, y, z, least] != [0.0; 4] && lit != 0 {
-                lit &= window.bits(|r, g, b| x * r + y * g + z * b >= least);
+        for face in &self.faces {
+            if *face != Face::default() && lit != 0 {
+                lit &= face.lit(window);
             }
         }
         lit
     }
+
+    fn is_lit(&self, color: [f32; 3]) -> bool {
+        self.faces.iter().all(|face| distance(face.normal, color) >= face.least)
+    }
+
+    /// Those of which enough colors are outliers of `band`, which was fitted without them: a part of a surface that is a
+    /// cylinder makes a plane of colors too, but they obey the model. `None` where there is none.
+    #[inline(never)]
+    pub fn confirmed(&self, pixels: &impl Pixels, usable: Usable, band: Band) -> Option<Self> {
+        let inliers = Inliers { residual: band, ..Inliers::all(usable) };
+        let mut shaded = [[0_usize; 2]; MAX_FACES];
+        pixels.for_each_window(|window| {
+            let (among, inside) = (usable.bits(window), inliers.bits(window));
+            for (face, [all, outliers]) in self.faces.iter().zip(&mut shaded) {
+                let bits = among & !face.lit(window);
+                *all += bits.count_ones() as usize;
+                *outliers += (bits & !inside).count_ones() as usize;
+            }
+        });
+        #[cfg(feature = "dbg")]
+        {
+            extern crate std;
+            std::println!("{:?} {:?}", self.faces, shaded);
+        }
+        let mut confirmed = *self;
+        for (face, [all, outliers]) in confirmed.faces.iter_mut().zip(shaded) {
+            if (outliers as f64) < SMALLEST_OUTLIERS * all as f64 {
+                *face = Face::default();
+            }
+        }
+        (confirmed != Self::NONE).then_some(confirmed)
+    }
 }
 
 /// The shadows in `pixels`, of which the `count` that are `usable` were fitted: `band` holds those near the ellipsoid, and
-/// `noise` is the deviation of a channel.
+/// `noise` is the deviation of a channel. `None` where there are none.
 ///
 /// # Scratch
 /// The longer, the more colors are looked at: 3072 `f32` are used at most. Two passes over the pixels.
@@ -106,10 +138,10 @@ pub fn find(
     noise: f64,
     seed: u64,
     workspace: &mut [f32],
-) -> Shadows {
+) -> Option<Shadows> {
     let (room, _) = workspace.as_chunks_mut::<3>();
     let stride = count.div_ceil(room.len().clamp(1, SAMPLE)).max(1);
-    let Some(colors) = room.get_mut(..count / stride) else { return Shadows::NONE };
+    let colors = room.get_mut(..count / stride)?;
     let inliers = Inliers { residual: band, ..Inliers::all(usable) };
     // Outliers come from the front, the others from the back.
     let (mut front, mut back, mut number) = (0, colors.len(), 0_usize);
@@ -133,11 +165,12 @@ pub fn find(
         });
     });
     if front != back {
-        return Shadows::NONE;
+        return None;
     }
     let size: f64 = colors.as_flattened().iter().map(|&value| f64::from(value) * f64::from(value)).sum();
     let exact = EXACT * sqrt(size / colors.len().max(1) as f64);
-    Search { colors, outliers: front, noise: noise.max(exact) as f32 }.faces(seed)
+    let shadows = Search { colors, outliers: front, noise: noise.max(exact) as f32 }.faces(seed);
+    (shadows != Shadows::NONE).then_some(shadows)
 }
 
 /// Colors, the outliers first.
@@ -151,7 +184,6 @@ struct Search<'w> {
 #[derive(Clone, Copy, Default)]
 struct Layers {
     near: u16,
-    near_outliers: u16,
     beside: u16,
     beyond: u16,
 }
@@ -167,47 +199,58 @@ impl Layers {
     }
 
     fn is_face(self, all: usize) -> bool {
-        self.gain() >= SMALLEST_SHARE * all as f64
-            && f64::from(self.near) >= CONCENTRATION * self.expected()
-            && f64::from(self.near_outliers) >= SMALLEST_OUTLIERS * f64::from(self.near)
+        self.gain() >= SMALLEST_SHARE * all as f64 && f64::from(self.near) >= CONCENTRATION * self.expected()
     }
 }
 
 impl Search<'_> {
-    fn faces(mut self, seed: u64) -> Shadows {
+    fn faces(self, seed: u64) -> Shadows {
         let mut rng = Rng::new(seed);
         let mut shadows = Shadows::NONE;
-        // Planes go through outliers that lie in no other face.
-        let mut free = self.outliers;
-        for face in &mut shadows.faces {
-            if free < SMALLEST_COUNT {
-                break;
+        for i in 0..MAX_FACES {
+            let Some(normal) = self.best(&shadows, &mut rng) else { break };
+            if let Some(face) = shadows.faces.get_mut(i) {
+                *face = self.face(normal);
             }
-            let Some(normal) = self.best(free, &mut rng) else { break };
-            *face = self.face(normal);
-            free = self.set_aside(free, normal);
         }
         shadows
     }
 
-    /// The most concentrated plane through two of the first `free` colors, if it is a face.
-    fn best(&self, free: usize, rng: &mut Rng) -> Option<[f32; 3]> {
+    /// The most concentrated plane through two colors above all faces so far, if it is a face.
+    fn best(&self, shadows: &Shadows, rng: &mut Rng) -> Option<[f32; 3]> {
         let mut best: Option<(f64, [f32; 3])> = None;
-        for _ in 0..TRIALS {
-            let [i, j] = rng.distinct::<2>(free as u32)?;
-            let color = |i: u32| self.colors.get(i as usize).copied().unwrap_or_default().map(f64::from);
-            let Some(normal) = self.inward(mat3::cross(color(i), color(j))) else { continue };
-            if let Some(layers) = self.layers(normal)
-                && best.is_none_or(|(most, _)| layers.gain() > most)
+        for trial in 0..TRIALS {
+            // Where they bend the ellipsoid enough, few shaded colors are outliers.
+            let from = if trial % 2 == 0 { self.outliers } else { self.colors.len() };
+            let Some(pair) = rng.distinct::<2>(from as u32) else { continue };
+            let [a, b] = pair.map(|i| self.colors.get(i as usize).copied().unwrap_or_default());
+            if !(shadows.is_lit(a) && shadows.is_lit(b)) {
+                continue;
+            }
+            let Some(normal) = self.inward(mat3::cross(a.map(f64::from), b.map(f64::from))) else { continue };
+            let least = best.map_or(0.0, |(most, _)| 0.5 * most);
+            if let Some((gain, normal)) = self.settled(normal, least)
+                && best.is_none_or(|(most, _)| gain > most)
             {
-                best = Some((layers.gain(), normal));
+                best = Some((gain, normal));
             }
         }
-        let (_, mut normal) = best?;
-        for _ in 0..ROUNDS {
+        let (_, normal) = best?;
+        self.layers(normal, MAX_BEYOND)?.is_face(self.colors.len()).then_some(normal)
+    }
+
+    /// The plane fitted to the colors near this one, if it holds more than `least` of them by itself, and its gain.
+    fn settled(&self, normal: [f32; 3], least: f64) -> Option<(f64, [f32; 3])> {
+        // Two colors alone do not make it quite right.
+        let mut normal = normal;
+        for round in 0..ROUNDS {
+            let layers = self.layers(normal, 3.0 * MAX_BEYOND)?;
+            if round == 0 && layers.gain() <= least {
+                return None;
+            }
             normal = self.inward(self.fitted(normal))?;
         }
-        self.layers(normal)?.is_face(self.colors.len()).then_some(normal)
+        Some((self.layers(normal, MAX_BEYOND)?.gain(), normal))
     }
 
     /// The direction or its opposite, of unit length, so that most colors lie on its side; `None` for none.
@@ -224,16 +267,15 @@ impl Search<'_> {
         Some(mat3::scale(direction, sign / length).map(|x| x as f32))
     }
 
-    /// How the colors lie about the plane; `None` where too many are beyond it.
-    fn layers(&self, normal: [f32; 3]) -> Option<Layers> {
-        let limit = MAX_BEYOND * self.colors.len() as f64;
+    /// How the colors lie about the plane; `None` where more than this share are beyond it.
+    fn layers(&self, normal: [f32; 3], beyond: f64) -> Option<Layers> {
+        let limit = beyond * self.colors.len() as f64;
         let (near, beside, beyond) = (NEAR * self.noise, BESIDE * self.noise, -BEYOND * self.noise);
         let mut layers = Layers::default();
-        for (i, &color) in self.colors.iter().enumerate() {
+        for &color in self.colors.iter() {
             let distance = distance(normal, color);
             if fabsf(distance) <= near {
                 layers.near += 1;
-                layers.near_outliers += u16::from(i < self.outliers);
             } else if distance > 0.0 && distance <= beside {
                 layers.beside += 1;
             } else if distance < beyond {
@@ -275,25 +317,6 @@ impl Search<'_> {
         let noise =
             if count >= SMALLEST_COUNT { sqrt(squares / count as f64) } else { f64::from(self.noise) };
         Face { normal, least: (f64::from(MARGIN) * noise) as f32 }
-    }
-
-    /// Moves those of the first `free` colors that lie near the plane behind the others; how many stay.
-    fn set_aside(&mut self, free: usize, normal: [f32; 3]) -> usize {
-        let limit = BEYOND * self.noise;
-        let mut stay = 0;
-        for i in 0..free {
-            let at = |i: usize| self.colors.get(i).copied().unwrap_or_default();
-            let (color, other) = (at(i), at(stay));
-            if fabsf(distance(normal, color)) > limit {
-                for (place, value) in [(i, other), (stay, color)] {
-                    if let Some(slot) = self.colors.get_mut(place) {
-                        *slot = value;
-                    }
-                }
-                stay += 1;
-            }
-        }
-        stay
     }
 }
 

@@ -5,7 +5,7 @@ mod fallback;
 pub use fallback::SlantFallback;
 
 use crate::constrained_slant::{self, Candidates, MAX_CANDIDATES, SlantRoot};
-use crate::ellipsoid::{self, Ellipsoid};
+use crate::ellipsoid::{self, Coefficients, Ellipsoid};
 use crate::image::{Census, Image, Usable};
 use crate::inliers::{Band, Inliers};
 use crate::integrability;
@@ -25,6 +25,9 @@ use libm::{atan2, hypot};
 /// scenes (cylinders, planes, cones, ramps, mixtures of colors, with and without noise) come to 0.2-1.1, photographs
 /// that give good normals to 1.9-6.7; at 1.5 nearly half of a coefficient of C can be bias.
 pub(crate) const SMALLEST_NOISE_MARGIN: f64 = 1.5;
+
+/// Times that shadows are looked for.
+const SHADOW_ROUNDS: usize = 2;
 
 /// How the orthogonal transformation that the regression leaves open is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -340,28 +343,66 @@ impl Solution {
     /// Looks for shadows, and fits anew without them.
     #[inline(never)]
     fn leave_out_shadows(&mut self, pixels: &impl Pixels, params: &Params, workspace: &mut [f32]) {
-        let (Some(fit), usable) = (&self.fit, self.inliers.usable) else { return };
-        let (count, lmeds) = (fit.usable, &params.lmeds);
+        let count = self.fit.as_ref().map_or(0, |fit| fit.usable);
+        let mut left = count;
+        // An ellipsoid that shadows no longer bend shows more of them.
+        for _ in 0..SHADOW_ROUNDS {
+            let Some(fewer) = self.leave_out_faces(pixels, count, params, workspace) else { break };
+            left = fewer;
+        }
+        // The pixels may be a sample of those that were counted.
+        let shaded = self.census.usable as u128 * (count - left) as u128 / count.max(1) as u128;
+        self.census.usable -= shaded as usize;
+        self.census.shaded = shaded as usize;
+    }
+
+    /// One round over the `count` usable pixels: how many are left; `None`, with nothing done, where there are no shadows.
+    fn leave_out_faces(
+        &mut self,
+        pixels: &impl Pixels,
+        count: usize,
+        params: &Params,
+        workspace: &mut [f32],
+    ) -> Option<usize> {
+        let (fit, lmeds) = (self.fit.as_ref()?, &params.lmeds);
+        let usable = Usable::below(self.inliers.usable.saturation);
         let shadows =
-            shadows::find(pixels, usable, count, fit.band, fit.noise_deviation, lmeds.seed, workspace);
-        if !shadows.any() {
-            return;
+            shadows::find(pixels, usable, count, fit.band, fit.noise_deviation, lmeds.seed, workspace)?;
+        let (z, mut refit) = (fit.z(), None);
+        let mut left = self.refit(pixels, Usable { shadows, ..usable }, z, lmeds, workspace, &mut refit)?;
+        let confirmed = shadows.confirmed(pixels, usable, refit.as_ref()?.band)?;
+        let lit = Usable { shadows: confirmed, ..usable };
+        if confirmed != shadows {
+            left = self.refit(pixels, lit, z, lmeds, workspace, &mut refit)?;
         }
-        let lit = Usable { shadows, ..usable };
-        let left = Inliers::all(lit).count(pixels);
+        self.fit = refit;
+        self.inliers.usable = lit;
+        Some(left)
+    }
+
+    /// Puts the fit that begins at `z` into `out`, and says how many pixels it is of.
+    fn refit(
+        &self,
+        pixels: &impl Pixels,
+        usable: Usable,
+        z: Coefficients,
+        params: &lmeds::Params,
+        workspace: &mut [f32],
+        out: &mut Option<Fit>,
+    ) -> Option<usize> {
+        let count = Inliers::all(usable).count(pixels);
         let scale = lmeds::reciprocal_power_of_two(self.census.largest);
-        let scaled = fit.robust.map(|c| c / (scale * scale));
-        let mut refit = None;
-        let judged = lmeds::judge(pixels, lit, left, scale, Some(scaled), lmeds, workspace, &mut refit);
-        if judged.is_ok() && refit.is_some() && left >= lmeds::MIN_PIXELS {
-            self.fit = refit;
-            self.inliers.usable = lit;
-            // The pixels may be a sample of those that were counted.
-            let shaded =
-                (self.census.usable as u128 * (count - left) as u128 / count.max(1) as u128) as usize;
-            self.census.usable -= shaded;
-            self.census.shaded = shaded;
+        if count < lmeds::MIN_PIXELS {
+            return None;
         }
+        // The band is about the z that it begins at: once more about its own.
+        let mut z = z;
+        for _ in 0..2 {
+            let scaled = z.map(|c| c / (scale * scale));
+            lmeds::judge(pixels, usable, count, scale, Some(scaled), params, workspace, out).ok()?;
+            z = out.as_ref()?.z();
+        }
+        Some(count)
     }
 
     /// Ends with the choice of slants that is in its place.

@@ -52,6 +52,7 @@ pub(super) struct Integrable {
     noise: Form,
     model: f64,
     factor: f64,
+    count: usize,
 }
 
 /// One window.
@@ -139,7 +140,7 @@ impl Integrable {
         )?;
         let prior = |rows: &Mat3| outward.cost(rows);
         // Windows overlap fourfold.
-        let mut form = Self { squares: Form::ZERO, noise: Form::ZERO, model: 0.0, factor: 0.125 * n as f64 };
+        let mut form = Self { squares: Form::ZERO, noise: Form::ZERO, model: 0.0, factor: 0.125 * n as f64, count: n };
         let mut rows = rows;
         for round in 0..ROUNDS {
             let of = |record: &Record| {
@@ -169,6 +170,8 @@ impl Integrable {
     pub fn cost(&self, rows: &Mat3) -> f64 {
         self.factor * self.ratio(rows)
     }
+
+    pub fn simple(&self, rows: &Mat3) -> f64 { 0.125 * self.count as f64 * self.ratio(rows) }
 
     fn ratio(&self, rows: &Mat3) -> f64 {
         let expected = self.noise.at(rows) + self.model;

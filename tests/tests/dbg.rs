@@ -1,0 +1,240 @@
+//! The default orientation: on rendered scenes against the best that any orthogonal transformation could do, and on the
+//! photographs. The tables say more than the bounds below them, which are what is measured with some room.
+
+use ofc_core::image::{Image, Order, Sample, Window};
+use ofc_core::joint::{self, Evidence};
+use ofc_core::lmeds;
+use ofc_core::normals::{Length, normal};
+use ofc_core::render::{self, Canvas, Lights, Outputs, Rows, render};
+use ofc_core::rng::Rng;
+use ofc_core::solve::{Outcome, Params, Road, SlantSource, Solution, solve, workspace_len};
+use ofc_tests::depth_maps::{
+    self, Relief, TABLE_1_COLORS, direction, egg, peaks, sphere, table_1_directions, terrain, vase,
+};
+use ofc_tests::linear::{Matrix, apply, degrees_between, dot, median, nearest_orthogonal, unit};
+use ofc_tests::photographs::{self, read_png};
+
+/// Random light triples beside Table 1's: `OFC_LIGHTS=10` is the whole table.
+fn light_triples() -> u64 {
+    std::env::var("OFC_LIGHTS").map_or(3, |text| text.parse().expect("OFC_LIGHTS is a number"))
+}
+
+fn solved(image: &Image, params: &Params) -> Solution {
+    let pixels = image.width() * image.height();
+    let mut workspace = vec![f32::NAN; workspace_len(pixels, params.lmeds.sample_size)];
+    solve(image, params, &mut workspace).expect("enough pixels")
+}
+
+/// Median angle between normals and truth over the inliers, the same for the best orthogonal transformation of the same
+/// root, and whether the twin is further off.
+struct Errors {
+    ours: f64,
+    oracle: f64,
+    right_twin: bool,
+}
+
+/// N of unit length, the normal found, and the true one.
+type Pixel = ([f64; 3], [f64; 3], [f64; 3]);
+
+fn errors(image: &Image, solution: &Solution, truth: &[[f32; 3]]) -> Errors {
+    let root = solution.ellipsoid.expect("an ellipsoid").root;
+    let f_inverse = solution.choice.as_ref().expect("an answer").orientation.f_inverse;
+    let mut pixels: Vec<Pixel> = Vec::new();
+    image.for_each_window(|window| {
+        let bits = solution.inliers.bits(window);
+        for i in (0..window.len).filter(|i| bits >> i & 1 == 1) {
+            let t = truth[window.y * image.width() + window.x + i].map(f64::from);
+            if dot(t, t) > 0.0 {
+                let color = window.pixel(i);
+                pixels.push((
+                    unit(apply(root, color.map(f64::from))),
+                    normal(&f_inverse, color, Length::Unit),
+                    t,
+                ));
+            }
+        }
+    });
+    let of = |normal: &dyn Fn(&Pixel) -> [f64; 3]| {
+        let all: Vec<f64> = pixels.iter().map(|pixel| degrees_between(normal(pixel), pixel.2)).collect();
+        median(&all)
+    };
+    // Procrustes, with weights that lead to the median.
+    let mut turn: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for round in 0..20 {
+        let mut sum: Matrix = [[0.0; 3]; 3];
+        for &(n, _, t) in &pixels {
+            let off = degrees_between(apply(turn, n), t).to_radians();
+            let weight = if round == 0 { 1.0 } else { 1.0 / (0.01 + off) };
+            for (row, t) in sum.iter_mut().zip(t) {
+                row.iter_mut().zip(n).for_each(|(entry, n)| *entry += weight * t * n);
+            }
+        }
+        turn = nearest_orthogonal(sum);
+    }
+    println!("TURN {turn:?}");
+    let ours = of(&|&(_, found, _)| found);
+    let twin = of(&|&(_, [x, y, z], _)| [-x, -y, z]);
+    Errors { ours, oracle: of(&|&(n, ..)| apply(turn, n)), right_twin: ours <= twin }
+}
+
+fn rendered(relief: &Relief, a: &[f64; 9], b: &[f64; 9], noise: f64, seed: u64) -> (Vec<u8>, Vec<[f32; 3]>) {
+    let (width, height) = (relief.width, relief.height);
+    let bytes = relief.bytes();
+    let mut pixels = vec![0; width * height * 3];
+    let mut normals = vec![0.0; width * height * 3];
+    let params = render::Params { noise, seed, ..render::Params::default() };
+    let picture = Canvas::new(&mut pixels, width, height, width * 3, Sample::U8, Order::Rgb).expect("room");
+    let rows = Rows { values: &mut normals, row_stride: width * 3 };
+    let outputs = Outputs { picture, seen: None, normals: Some(rows) };
+    render(&relief.view(&bytes), &Lights::new(a, b).expect("lights"), &params, outputs).expect("a picture");
+    (pixels, normals.as_chunks().0.to_vec())
+}
+
+/// Table 1's lights, or three of slants 20 to 60 degrees, roughly a third of a turn apart.
+fn lights(number: u64) -> ([f64; 9], [f64; 9]) {
+    if number == 0 {
+        return (table_1_directions(), TABLE_1_COLORS);
+    }
+    let mut rng = Rng::new(1000 + number);
+    let mut uniform = || f64::from(rng.below(1_000_000)) / 1e6;
+    let (mut a, mut b) = ([0.0; 9], [0.0; 9]);
+    let first = 360.0 * uniform();
+    for (light, row) in a.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+        let tilt = first + 120.0 * light as f64 + 60.0 * (uniform() - 0.5);
+        *row = direction([20.0 + 40.0 * uniform(), tilt]);
+    }
+    for (i, entry) in b.iter_mut().enumerate() {
+        *entry = if i % 4 == 0 { 60.0 + 40.0 * uniform() } else { 10.0 + 35.0 * uniform() };
+    }
+    (a, b)
+}
+
+#[test]
+fn dbg() {
+    let mut cases = Vec::new();
+    for name in ["sphere","egg","bump","peaks","vase","bust","terrain"] { for number in [0,1,3,4,5,9,10] { for noise in [0.3,1.0] { cases.push((name,number,noise)); }}}
+    for (name, number, noise) in cases {
+                let relief = match name { "bust" => depth_maps::bust(256,256), "terrain" => terrain(256,256), "vase" => vase(256,256), "egg" => egg(256,256), "bump" => depth_maps::bump(256,256), "peaks" => peaks(256,256), _ => sphere(256,256,0.9,80.0) };
+let (a, b) = lights(number);
+        let (pixels, truth) = rendered(&relief, &a, &b, noise, 7 + number);
+        let image = Image::interleaved(&pixels, 256, 256, 768, Sample::U8, Order::Rgb)
+            .and_then(|image| image.with_mask(&relief.mask, 256))
+            .expect("a picture");
+        println!("CASE {name} {number} {noise}");
+        let solution = solved(&image, &Params::default());
+        let e = errors(&image, &solution, &truth);
+        println!("END {:.2} {:.2} shaded {}", e.ours, e.oracle, solution.census.shaded);
+    }
+}
+#[test]
+fn photographs() {
+    for (name, limit) in [
+        ("cat_figurine", 4.5),
+        ("gelsight_ball_6mm", 5.0),
+        ("gelsight_ball_9mm", 8.0),
+        ("gelsight_ball_4mm", 14.5),
+    ] {
+        let Some(photograph) = photographs::load(name) else { return };
+        let mut medians = Vec::new();
+        for seed in 0..5 {
+            let lmeds = lmeds::Params { seed, ..lmeds::Params::default() };
+            let image = photograph.image();
+            let solution = solved(&image, &Params { lmeds, ..Params::default() });
+            assert_eq!(solution.choice.as_ref().map(|choice| choice.source), Some(SlantSource::Joint));
+            let joint = solution.joint.expect("the default road");
+            let Errors { ours, oracle, .. } = errors(&image, &solution, &photograph.normals);
+            let expected = joint.expected_error().to_degrees();
+            println!(
+                "{name:<18} seed {seed} {ours:6.2}, oracle {oracle:5.2}, expected {expected:5.2} {:?}",
+                joint.evidence
+            );
+            medians.push(ours);
+        }
+        assert!(median(&medians) <= limit, "{name}: {medians:.2?}");
+    }
+}
+
+/// Twelve presses of a ball into a gel, divided by the picture of the gel alone.
+#[test]
+fn presses_with_their_background() {
+    let Some(folder) = photographs::directory().map(|folder| folder.join("gelsight_presses")) else {
+        println!("skipped: no photographs beside the project (set OFC_DATA to their folder)");
+        return;
+    };
+    let table = std::fs::read_to_string(folder.join("presses.csv")).expect("presses.csv");
+    let (width, height, background) = read_png(&folder.join("background.png"), 3);
+    let mean = [0, 1, 2].map(|c| {
+        background.iter().skip(c).step_by(3).map(|&v| f64::from(v)).sum::<f64>() / (width * height) as f64
+    });
+    let mut medians = Vec::new();
+    for line in table.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [cx, cy, ball, trusted] =
+            [1, 2, 3, 4].map(|i| fields[i].trim().parse::<f64>().expect("a number"));
+        let (.., rgb) = read_png(&folder.join(format!("{}.png", fields[0])), 3);
+        let pixels: Vec<u8> = (rgb.iter().zip(&background).enumerate())
+            .flat_map(|(i, (&p, &b))| {
+                ((f64::from(p) / f64::from(b.max(1)) * mean[i % 3]) as f32).to_ne_bytes()
+            })
+            .collect();
+        let (mut mask, mut truth) = (vec![0; width * height], vec![[0.0_f32; 3]; width * height]);
+        for (i, (mask, truth)) in mask.iter_mut().zip(&mut truth).enumerate() {
+            let (x, y) = ((i % width) as f64 - cx, cy - (i / width) as f64);
+            if x.hypot(y) < trusted {
+                let [n1, n2] = [x / ball, y / ball];
+                *mask = 255;
+                *truth = [n1 as f32, n2 as f32, (1.0 - n1 * n1 - n2 * n2).sqrt() as f32];
+            }
+        }
+        let image = Image::interleaved(&pixels, width, height, width * 12, Sample::F32, Order::Rgb)
+            .and_then(|image| image.with_mask(&mask, width))
+            .expect("a picture");
+        let solution = solved(&image, &Params::default());
+        if solution.outcome == Outcome::Solved {
+            let Errors { ours, oracle, .. } = errors(&image, &solution, &truth);
+            println!("{:<10} {ours:5.2}, oracle {oracle:5.2}", fields[0]);
+            medians.push(ours);
+        } else {
+            println!("{:<10} {:?}", fields[0], solution.outcome);
+        }
+    }
+    let largest = medians.iter().copied().fold(0.0, f64::max);
+    println!("median of medians {:.2}, largest {largest:.2}, answered {}", median(&medians), medians.len());
+    assert!(medians.len() >= 11 && median(&medians) <= 5.0 && largest <= 9.0);
+}
+
+#[test]
+fn too_little_is_no_answer_and_the_paper_s_road_is_taken() {
+    let scene = sphere(24, 24, 0.9, 70.0);
+    let (a, b) = lights(1);
+    let (pixels, _) = rendered(&scene, &a, &b, 0.0, 1);
+    let image = Image::interleaved(&pixels, 24, 24, 72, Sample::U8, Order::Rgb).expect("a picture");
+    let root = [[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.01]];
+    let everything = |window: &Window| u64::MAX >> (64 - window.len);
+    let len = joint::workspace_len(24, 24);
+    assert!(joint::estimate(&image, everything, &root, &mut vec![f32::NAN; len]).is_some());
+    assert_eq!(joint::estimate(&image, everything, &root, &mut vec![f32::NAN; len - 1]), None);
+    assert_eq!(joint::estimate(&image, |_| 0, &root, &mut vec![f32::NAN; len]), None);
+    assert_eq!(joint::workspace_len(3, 400), 0);
+    let small = Image::interleaved(&pixels, 3, 24, 72, Sample::U8, Order::Rgb).expect("a picture");
+    assert_eq!(joint::estimate(&small, everything, &root, &mut []), None);
+    // A picture of one color has no gradients at all.
+    let flat = vec![100; 24 * 72];
+    let image = Image::interleaved(&flat, 24, 24, 72, Sample::U8, Order::Rgb).expect("a picture");
+    let found = joint::estimate(&image, everything, &root, &mut vec![f32::NAN; len]);
+    assert!(found.is_none_or(|joint| joint.covariance.as_flattened().iter().all(|v| v.is_finite())));
+}
+
+#[test]
+fn the_same_whatever_the_workspace_held() {
+    let relief = egg(160, 120);
+    let (a, b) = lights(2);
+    let (pixels, _) = rendered(&relief, &a, &b, 1.0, 1);
+    let image = Image::interleaved(&pixels, 160, 120, 480, Sample::U8, Order::Rgb).expect("a picture");
+    let params = Params::default();
+    let len = workspace_len(160 * 120, params.lmeds.sample_size);
+    let [first, second] =
+        [0.0, f32::NAN].map(|fill| solve(&image, &params, &mut vec![fill; len]).expect("a solution").joint);
+    assert!(first.is_some_and(|joint| joint.evidence != Evidence::Outward || joint.dome > 0.0));
+    assert_eq!(first, second);
+}
