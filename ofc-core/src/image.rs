@@ -418,7 +418,7 @@ impl Usable {
 
     /// Those with shaded ones among them.
     #[inline(never)]
-    fn exposed(&self, window: &Window) -> u64 {
+    pub fn exposed(&self, window: &Window) -> u64 {
         // Floats are in the order of their bits as integers with a sign, but for negative ones, and what is not finite
         // has the largest bits of its sign.
         const NEGATIVE_INFINITY: u32 = f32::NEG_INFINITY.to_bits();

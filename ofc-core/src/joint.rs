@@ -27,6 +27,7 @@ mod search;
 use crate::image::{Image, Window};
 use crate::mat3::{self, Mat3};
 use cells::Cells;
+use heapless::Vec;
 use integrable::Integrable;
 use libm::sqrt;
 use outward::Outward;
@@ -89,29 +90,40 @@ pub const fn workspace_len(width: usize, height: usize) -> usize {
 pub fn estimate(
     image: &Image,
     inliers: impl Fn(&Window) -> u64,
+    surface: impl Fn(&Window) -> u64,
     root: &Mat3,
     workspace: &mut [f32],
 ) -> Option<Joint> {
     let workspace = workspace.get_mut(..workspace_len(image.width(), image.height()))?;
     let (store, rest) = workspace.split_at_mut_checked(cells::len(image.width(), image.height()))?;
-    let mut cells = Cells::of(image, &inliers, root, store, rest);
-    let outward = Outward::of(&cells)?;
+    let mut cells = Cells::of(image, &inliers, surface, root, store, rest);
+    let outward = Outward::of(&cells, cells.whole)?;
     let noise = cells.noise(rest)?;
 
     let prior = |rows: &Mat3| outward.cost(rows);
     let mut best = search::minimum(&search::starts(), prior);
-    let mut chosen: Option<(Integrable, Mat3, f64)> = None;
+    let mut admitted: Vec<Scale, { WINDOW_SIZES.len() }> = Vec::new();
+    let mut radial = f64::INFINITY;
     for _ in WINDOW_SIZES {
-        if let Some((form, rows)) = Integrable::of(&cells, &noise, &outward, best.rows, rest) {
+        if let Some((form, rows)) = Integrable::of(&cells, &noise, &outward, best.rows, &mut radial, rest) {
             let information = search::hessian(&rows, |rows| form.cost(rows) + prior(rows));
             let spread = trace(&inverse(&information, 1.0 / LARGEST_VARIANCE));
             #[cfg(feature = "dbg")]
-            {extern crate std; 
-            let simple = search::hessian(&rows, |rows| form.simple(rows));
-            let simple = trace(&inverse(&simple, 1.0 / LARGEST_VARIANCE));
-            std::println!("SCALE {} {} {} {:?}", 2 * cells.side(), libm::sqrt(spread * 2.0 / 3.0) * 57.3,libm::sqrt(simple * 2.0 / 3.0) * 57.3, rows);}
-            if chosen.as_ref().is_none_or(|(.., least)| spread < *least) {
-                chosen = Some((form, rows, spread));
+            {
+                extern crate std;
+                let simple = search::hessian(&rows, |rows| form.simple(rows));
+                let simple = trace(&inverse(&simple, 1.0 / LARGEST_VARIANCE));
+                std::println!(
+                    "SCALE {} {} {} {:?}",
+                    2 * cells.side(),
+                    libm::sqrt(spread * 2.0 / 3.0) * 57.3,
+                    libm::sqrt(simple * 2.0 / 3.0) * 57.3,
+                    rows
+                );
+            }
+            let scale = Scale { form, rows, information, spread };
+            if !admitted.iter().all(|smaller| smaller.agrees(&rows)) || admitted.push(scale).is_err() {
+                break;
             }
         }
         if !cells.merge() {
@@ -119,12 +131,13 @@ pub fn estimate(
         }
     }
 
-    let form = chosen.as_ref().map(|(form, ..)| form);
+    let chosen = admitted.iter().min_by(|a, b| a.spread.total_cmp(&b.spread));
+    let form = chosen.map(|chosen| &chosen.form);
     let cost = |rows: &Mat3| prior(rows) + form.map_or(0.0, |form| form.cost(rows));
     let mut starts = search::starts();
     starts[0] = best.rows;
-    if let Some((_, rows, _)) = &chosen {
-        starts[1] = *rows;
+    if let Some(chosen) = chosen {
+        starts[1] = chosen.rows;
     }
     best = search::minimum(&starts, cost);
     let information = search::hessian(&best.rows, cost);
@@ -139,6 +152,26 @@ pub fn estimate(
     let (rows, dome) = dome::convex(image, inliers, root, rows, outward.middle);
     Some(Joint { rows, covariance, evidence, dome, second_best: best.second })
 }
+
+/// What windows of one size say together with the outward normals.
+struct Scale {
+    form: Integrable,
+    rows: Mat3,
+    information: Mat3,
+    spread: f64,
+}
+
+impl Scale {
+    /// Whether other rows are within the uncertainty of these. The larger windows are the more they hide of the curvature of a
+    /// surface, and at some size they are wrong by more than the noise that they leave out (O. V. Lepski's rule).
+    fn agrees(&self, rows: &Mat3) -> bool {
+        let turn = search::turn(&self.rows, rows);
+        mat3::dot(turn, mat3::apply(&self.information, turn)) <= LARGEST_DISTANCE
+    }
+}
+
+/// Squared, in standard deviations of three parameters.
+const LARGEST_DISTANCE: f64 = 9.0;
 
 fn trace(a: &Mat3) -> f64 {
     let [[a, ..], [_, b, _], [.., c]] = *a;

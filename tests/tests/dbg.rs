@@ -112,10 +112,24 @@ fn lights(number: u64) -> ([f64; 9], [f64; 9]) {
 #[test]
 fn dbg() {
     let mut cases = Vec::new();
-    for name in ["sphere","egg","bump","peaks","vase","bust","terrain"] { for number in [0,1,3,4,5,9,10] { for noise in [0.3,1.0] { cases.push((name,number,noise)); }}}
+    for name in ["sphere", "egg", "bump", "peaks", "vase", "bust", "terrain"] {
+        for number in [0, 1, 3, 4, 5, 9, 10] {
+            for noise in [0.3, 1.0] {
+                cases.push((name, number, noise));
+            }
+        }
+    }
     for (name, number, noise) in cases {
-                let relief = match name { "bust" => depth_maps::bust(256,256), "terrain" => terrain(256,256), "vase" => vase(256,256), "egg" => egg(256,256), "bump" => depth_maps::bump(256,256), "peaks" => peaks(256,256), _ => sphere(256,256,0.9,80.0) };
-let (a, b) = lights(number);
+        let relief = match name {
+            "bust" => depth_maps::bust(256, 256),
+            "terrain" => terrain(256, 256),
+            "vase" => vase(256, 256),
+            "egg" => egg(256, 256),
+            "bump" => depth_maps::bump(256, 256),
+            "peaks" => peaks(256, 256),
+            _ => sphere(256, 256, 0.9, 80.0),
+        };
+        let (a, b) = lights(number);
         let (pixels, truth) = rendered(&relief, &a, &b, noise, 7 + number);
         let image = Image::interleaved(&pixels, 256, 256, 768, Sample::U8, Order::Rgb)
             .and_then(|image| image.with_mask(&relief.mask, 256))
@@ -212,16 +226,16 @@ fn too_little_is_no_answer_and_the_paper_s_road_is_taken() {
     let root = [[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.01]];
     let everything = |window: &Window| u64::MAX >> (64 - window.len);
     let len = joint::workspace_len(24, 24);
-    assert!(joint::estimate(&image, everything, &root, &mut vec![f32::NAN; len]).is_some());
-    assert_eq!(joint::estimate(&image, everything, &root, &mut vec![f32::NAN; len - 1]), None);
-    assert_eq!(joint::estimate(&image, |_| 0, &root, &mut vec![f32::NAN; len]), None);
+    assert!(joint::estimate(&image, everything, everything, &root, &mut vec![f32::NAN; len]).is_some());
+    assert_eq!(joint::estimate(&image, everything, everything, &root, &mut vec![f32::NAN; len - 1]), None);
+    assert_eq!(joint::estimate(&image, |_| 0, everything, &root, &mut vec![f32::NAN; len]), None);
     assert_eq!(joint::workspace_len(3, 400), 0);
     let small = Image::interleaved(&pixels, 3, 24, 72, Sample::U8, Order::Rgb).expect("a picture");
-    assert_eq!(joint::estimate(&small, everything, &root, &mut []), None);
+    assert_eq!(joint::estimate(&small, everything, everything, &root, &mut []), None);
     // A picture of one color has no gradients at all.
     let flat = vec![100; 24 * 72];
     let image = Image::interleaved(&flat, 24, 24, 72, Sample::U8, Order::Rgb).expect("a picture");
-    let found = joint::estimate(&image, everything, &root, &mut vec![f32::NAN; len]);
+    let found = joint::estimate(&image, everything, everything, &root, &mut vec![f32::NAN; len]);
     assert!(found.is_none_or(|joint| joint.covariance.as_flattened().iter().all(|v| v.is_finite())));
 }
 

@@ -252,16 +252,16 @@ fn too_little_is_no_answer_and_the_paper_s_road_is_taken() {
     let root = [[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.01]];
     let everything = |window: &Window| u64::MAX >> (64 - window.len);
     let len = joint::workspace_len(24, 24);
-    assert!(joint::estimate(&image, everything, &root, &mut vec![f32::NAN; len]).is_some());
-    assert_eq!(joint::estimate(&image, everything, &root, &mut vec![f32::NAN; len - 1]), None);
-    assert_eq!(joint::estimate(&image, |_| 0, &root, &mut vec![f32::NAN; len]), None);
+    assert!(joint::estimate(&image, everything, everything, &root, &mut vec![f32::NAN; len]).is_some());
+    assert_eq!(joint::estimate(&image, everything, everything, &root, &mut vec![f32::NAN; len - 1]), None);
+    assert_eq!(joint::estimate(&image, |_| 0, everything, &root, &mut vec![f32::NAN; len]), None);
     assert_eq!(joint::workspace_len(3, 400), 0);
     let small = Image::interleaved(&pixels, 3, 24, 72, Sample::U8, Order::Rgb).expect("a picture");
-    assert_eq!(joint::estimate(&small, everything, &root, &mut []), None);
+    assert_eq!(joint::estimate(&small, everything, everything, &root, &mut []), None);
     // A picture of one color has no gradients at all.
     let flat = vec![100; 24 * 72];
     let image = Image::interleaved(&flat, 24, 24, 72, Sample::U8, Order::Rgb).expect("a picture");
-    let found = joint::estimate(&image, everything, &root, &mut vec![f32::NAN; len]);
+    let found = joint::estimate(&image, everything, everything, &root, &mut vec![f32::NAN; len]);
     assert!(found.is_none_or(|joint| joint.covariance.as_flattened().iter().all(|v| v.is_finite())));
 }
 

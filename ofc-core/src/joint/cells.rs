@@ -146,6 +146,8 @@ pub(super) struct Cells<'w> {
     width: usize,
     height: usize,
     side: usize,
+    /// The mean position of the whole surface in pixels, x right and y up from the top left pixel.
+    pub whole: [f64; 2],
 }
 
 impl<'w> Cells<'w> {
@@ -153,20 +155,29 @@ impl<'w> Cells<'w> {
     pub fn of(
         image: &Image,
         inliers: impl Fn(&Window) -> u64,
+        surface: impl Fn(&Window) -> u64,
         root: &Mat3,
         numbers: &'w mut [f32],
         rest: &mut [f32],
     ) -> Self {
+        let (mut count, mut whole) = (0.0, [0.0; 2]);
         let (width, height) = (image.width() / SIDE, image.height() / SIDE);
         let mut windows = [const { Window::new() }; SIDE];
         let (cells, _) = numbers.as_chunks_mut::<NUMBERS>();
         let (residuals, _) = rest.as_chunks_mut::<COVARIANCE>();
         for y in 0..height {
+            let y0 = y * SIDE;
             for from in (0..width * SIDE).step_by(WINDOW) {
                 let mut bits = [0; SIDE];
                 for ((row, window), bits) in windows.iter_mut().enumerate().zip(&mut bits) {
                     image.read(from, y * SIDE + row, window);
                     *bits = inliers(window);
+                    for_each_bit(surface(window), |i| {
+                        let [x, y] = &mut whole;
+                        count += 1.0;
+                        *x += (from + i) as f64;
+                        *y -= (y0 + row) as f64;
+                    });
                 }
                 let first = y * width + from / SIDE;
                 let last = (y + 1) * width;
@@ -177,7 +188,8 @@ impl<'w> Cells<'w> {
                 }
             }
         }
-        Self { numbers, width, height, side: SIDE }
+        let whole = whole.map(|sum| if count > 0.0 { sum / count } else { 0.0 });
+        Self { numbers, width, height, side: SIDE, whole }
     }
 
     /// The covariance of a pixel's N, from the residuals that [`Cells::of`] left in `rest`; `None` without a cell.

@@ -122,6 +122,7 @@ impl Integrable {
         noise: &Mat3,
         outward: &Outward,
         rows: Mat3,
+        least_radial: &mut f64,
         scratch: &mut [f32],
     ) -> Option<(Self, Mat3)> {
         let [width, height] = cells.size();
@@ -138,9 +139,11 @@ impl Integrable {
             MEDIAN_OF_TWO,
             [&mut *squares, &mut *variances],
         )?;
+        *least_radial = least_radial.min(radial.model);
         let prior = |rows: &Mat3| outward.cost(rows);
         // Windows overlap fourfold.
-        let mut form = Self { squares: Form::ZERO, noise: Form::ZERO, model: 0.0, factor: 0.125 * n as f64, count: n };
+        let mut form =
+            Self { squares: Form::ZERO, noise: Form::ZERO, model: 0.0, factor: 0.125 * n as f64, count: n };
         let mut rows = rows;
         for round in 0..ROUNDS {
             let of = |record: &Record| {
@@ -161,7 +164,7 @@ impl Integrable {
                 polish(rows, cost(&rows), 120, cost).0
             };
             form.model = (form.squares.at(&rows) - form.noise.at(&rows)).max(0.0);
-            form.factor = parts.information(&form, &rows, radial.model / (model.noise + model.model))?;
+            form.factor = parts.information(&form, &rows, *least_radial / (model.noise + model.model))?;
         }
         Some((form, rows))
     }
@@ -171,7 +174,10 @@ impl Integrable {
         self.factor * self.ratio(rows)
     }
 
-    pub fn simple(&self, rows: &Mat3) -> f64 { 0.125 * self.count as f64 * self.ratio(rows) }
+    #[cfg(feature = "dbg")]
+    pub fn simple(&self, rows: &Mat3) -> f64 {
+        0.125 * self.count as f64 * self.ratio(rows)
+    }
 
     fn ratio(&self, rows: &Mat3) -> f64 {
         let expected = self.noise.at(rows) + self.model;
@@ -315,10 +321,12 @@ impl Sums {
             }
         }
         let least = 1e-6 * trace(&hessian).abs().max(f64::MIN_POSITIVE);
+        // Windows overlap fourfold.
+        let white = 1.0 / (0.125 * form.count as f64);
         let random = NEIGHBOURS * trace(&mat3::multiply(&inverse(&hessian, least), &scatter)) / 3.0;
         let share = radial.max(1e-3);
         let systematic = 2.0 * share * share * share / SYSTEMATIC_WINDOWS;
-        let total = random + systematic;
+        let total = random.max(white) + systematic;
         (total > 0.0).then(|| 1.0 / total)
     }
 }

@@ -44,12 +44,13 @@ impl Slopes {
         Some(Self { along: whole, variance: variance.max(1e-6 * size) })
     }
 
-    /// The negative log likelihood that slopes in the frame of `rows` are kappa (1, 0, 0) and kappa (0, 1, 0), kappa > 0.
-    fn cost(&self, rows: &Mat3) -> f64 {
+    /// The negative log likelihood that slopes in the frame of `rows` are kappa (1, 0, -kappa `x0`) and
+    /// kappa (0, 1, -kappa `y0`), kappa > 0: those of a sphere at that place from its middle.
+    fn cost(&self, rows: &Mat3, [x0, y0]: [f64; 2]) -> f64 {
         let [x, y] = self.along.map(|slope| mat3::apply(rows, slope));
         let ([a, b, c], [d, e, f]) = (x, y);
         let kappa = (0.5 * (a + e)).max(0.0);
-        let rest = [a - kappa, b, c, d, e - kappa, f];
+        let rest = [a - kappa, b, c + kappa * kappa * x0, d, e - kappa, f + kappa * kappa * y0];
         if self.variance > 0.0 { 0.5 * rest.iter().map(|v| v * v).sum::<f64>() / self.variance } else { 0.0 }
     }
 }
@@ -63,6 +64,8 @@ pub(super) struct Outward {
     normal: [f64; 3],
     /// The mean position in pixels, x right and y up from the top left pixel.
     pub middle: [f64; 2],
+    /// That position from the middle of the whole surface, of which parts may be shaded.
+    from_middle: [f64; 2],
 }
 
 /// The parts of a picture: where the inliers lie, cut into [`PARTS`] by [`PARTS`].
@@ -108,7 +111,7 @@ impl Parts {
 
 impl Outward {
     /// From the smallest cells; `None` where there are too few.
-    pub fn of(cells: &Cells) -> Option<Self> {
+    pub fn of(cells: &Cells, whole: [f64; 2]) -> Option<Self> {
         debug_assert!(cells.side() == SIDE);
         let parts = Parts::around(cells)?;
         let [x0, y0] = parts.middle();
@@ -151,12 +154,15 @@ impl Outward {
         }
         let mean = Slopes::jackknife(mean_but(&gradients, PARTS * PARTS)?, &left_out)?;
         let [n, x, y, ..] = total.position;
-        Some(Self { regression, mean, normal: total.normal, middle: [x0 + x / n, y0 + y / n] })
+        let middle = [x0 + x / n, y0 + y / n];
+        let ([mx, my], [wx, wy]) = (middle, whole);
+        Some(Self { regression, mean, normal: total.normal, middle, from_middle: [mx - wx, my - wy] })
     }
 
     /// The negative log likelihood of `rows`.
     pub fn cost(&self, rows: &Mat3) -> f64 {
-        self.regression.cost(rows) + SECOND * self.mean.cost(rows)
+        let rows = &self.facing(*rows);
+        self.regression.cost(rows, self.from_middle) + SECOND * self.mean.cost(rows, self.from_middle)
     }
 
     /// `rows` with the sign of r3 that lets the surface face the camera.

@@ -70,6 +70,19 @@ fn angle(a: &Mat3, b: &Mat3) -> f64 {
     acos((0.5 * (trace - 1.0)).clamp(-1.0, 1.0))
 }
 
+/// The rotation vector, in the frame of the rows, that leads from `a` to `b` or its twin, as far as it is small.
+pub(super) fn turn(a: &Mat3, b: &Mat3) -> [f64; 3] {
+    let [a1, a2, a3] = *a;
+    let [b1, b2, b3] = *b;
+    let sign = if mat3::dot(a1, b1) + mat3::dot(a2, b2) < 0.0 { -1.0 } else { 1.0 };
+    let [x, y, z] = [
+        mat3::dot(a2, b3) - sign * mat3::dot(a3, b2),
+        sign * mat3::dot(a3, b1) - mat3::dot(a1, b3),
+        sign * (mat3::dot(a1, b2) - mat3::dot(a2, b1)),
+    ];
+    mat3::scale([x, y, z], 0.5)
+}
+
 /// Second derivatives over small rotations in the frame of the rows: rows -> (1 + [w]) rows.
 pub(super) fn hessian(rows: &Mat3, cost: impl Fn(&Mat3) -> f64) -> Mat3 {
     derivatives(rows, cost).1
