@@ -24,7 +24,8 @@ mod integrable;
 mod outward;
 mod search;
 
-use crate::image::{Image, Window};
+use crate::image::Image;
+use crate::inliers::Inliers;
 use crate::mat3::{self, Mat3};
 use cells::Cells;
 use heapless::Vec;
@@ -79,7 +80,7 @@ pub const fn workspace_len(width: usize, height: usize) -> usize {
     cells::count(width, height).saturating_mul(cells::NUMBERS + integrable::NUMBERS)
 }
 
-/// The transformation of the normals `root` rho of the pixels that `inliers` gives the bits of; `None` where they are too
+/// The transformation of the normals `root` rho of the inliers; `None` where they are too
 /// few or too scattered to say anything.
 ///
 /// # Units
@@ -87,16 +88,10 @@ pub const fn workspace_len(width: usize, height: usize) -> usize {
 ///
 /// # Scratch
 /// [`workspace_len`] `f32`; what they hold before does not matter. One pass over the picture, and one over a quarter of it.
-pub fn estimate(
-    image: &Image,
-    inliers: impl Fn(&Window) -> u64,
-    surface: impl Fn(&Window) -> u64,
-    root: &Mat3,
-    workspace: &mut [f32],
-) -> Option<Joint> {
+pub fn estimate(image: &Image, inliers: &Inliers, root: &Mat3, workspace: &mut [f32]) -> Option<Joint> {
     let workspace = workspace.get_mut(..workspace_len(image.width(), image.height()))?;
     let (store, rest) = workspace.split_at_mut_checked(cells::len(image.width(), image.height()))?;
-    let mut cells = Cells::of(image, &inliers, surface, root, store, rest);
+    let mut cells = Cells::of(image, inliers, root, store, rest);
     let outward = Outward::of(&cells, cells.whole)?;
     let noise = cells.noise(rest)?;
 
@@ -113,6 +108,15 @@ pub fn estimate(
                 extern crate std;
                 let simple = search::hessian(&rows, |rows| form.simple(rows));
                 let simple = trace(&inverse(&simple, 1.0 / LARGEST_VARIANCE));
+                let pure =
+                    crate::orthogonal::polish::polish(rows, form.cost(&rows), 300, |rows| form.cost(rows)).0;
+                std::println!(
+                    "PURE {} {} {} {:?}",
+                    2 * cells.side(),
+                    form.cost(&rows) - form.cost(&pure),
+                    0,
+                    pure
+                );
                 std::println!(
                     "SCALE {} {} {} {:?}",
                     2 * cells.side(),
@@ -149,7 +153,7 @@ pub fn estimate(
         _ => Evidence::Both,
     };
     let rows = outward.facing(best.rows);
-    let (rows, dome) = dome::convex(image, inliers, root, rows, outward.middle);
+    let (rows, dome) = dome::convex(image, inliers.selector(), root, rows, outward.middle);
     Some(Joint { rows, covariance, evidence, dome, second_best: best.second })
 }
 
@@ -171,7 +175,7 @@ impl Scale {
 }
 
 /// Squared, in standard deviations of three parameters.
-const LARGEST_DISTANCE: f64 = 9.0;
+const LARGEST_DISTANCE: f64 = 5.0;
 
 fn trace(a: &Mat3) -> f64 {
     let [[a, ..], [_, b, _], [.., c]] = *a;

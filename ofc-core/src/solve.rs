@@ -219,13 +219,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         && !matches!(params.tilts, TiltEstimator::Given(_))
         && let Some(ellipsoid) = solution.ellipsoid
     {
-        solution.joint = joint::estimate(
-            image,
-            inliers.selector(),
-            |window| inliers.usable.exposed(window),
-            &ellipsoid.root,
-            workspace,
-        );
+        solution.joint = joint::estimate(image, &inliers, &ellipsoid.root, workspace);
         if let Some(joint) = &solution.joint {
             let (tilts, choice) = oriented(joint, &ellipsoid, params.rank_threshold);
             let is_solved = choice.orientation.rank == 3;

@@ -1,6 +1,7 @@
 //! Moments of N over small squares of pixels, and how two by two of them make the next size.
 
 use crate::image::{Image, WINDOW, Window, for_each_bit};
+use crate::inliers::Inliers;
 use crate::mat3::{self, Mat3};
 use crate::select::{kth_smallest, median_rank};
 
@@ -18,6 +19,9 @@ const SMALLEST_COUNT: f32 = 12.0;
 
 /// Cells whose residuals are above this many times the median are creases and edges rather than noise.
 const CREASE: f32 = 4.0;
+
+/// Outliers may lie beside the surface: they count for less in where its middle is.
+const OUTLIER: f64 = 1.0 / 3.0;
 
 /// How many of the smallest cells a picture has.
 pub(super) const fn count(width: usize, height: usize) -> usize {
@@ -154,8 +158,7 @@ impl<'w> Cells<'w> {
     /// The smallest cells. `rest` receives the covariance of each one's residuals.
     pub fn of(
         image: &Image,
-        inliers: impl Fn(&Window) -> u64,
-        surface: impl Fn(&Window) -> u64,
+        inliers: &Inliers,
         root: &Mat3,
         numbers: &'w mut [f32],
         rest: &mut [f32],
@@ -171,12 +174,15 @@ impl<'w> Cells<'w> {
                 let mut bits = [0; SIDE];
                 for ((row, window), bits) in windows.iter_mut().enumerate().zip(&mut bits) {
                     image.read(from, y * SIDE + row, window);
-                    *bits = inliers(window);
-                    for_each_bit(surface(window), |i| {
+                    *bits = inliers.bits(window);
+                    let exposed = inliers.usable.exposed(window);
+                    let shaded = exposed & !inliers.usable.shadows.lit(window, exposed);
+                    for_each_bit(exposed, |i| {
+                        let weight = if (*bits | shaded) >> i & 1 == 1 { 1.0 } else { OUTLIER };
                         let [x, y] = &mut whole;
-                        count += 1.0;
-                        *x += (from + i) as f64;
-                        *y -= (y0 + row) as f64;
+                        count += weight;
+                        *x += weight * (from + i) as f64;
+                        *y -= weight * (y0 + row) as f64;
                     });
                 }
                 let first = y * width + from / SIDE;
