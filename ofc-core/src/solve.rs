@@ -24,7 +24,7 @@ use libm::{atan2, hypot};
 /// The noise that would make a degenerate scene look like this one must be so many times the noise there is. Degenerate
 /// scenes (cylinders, planes, cones, ramps, mixtures of colors, with and without noise) come to 0.2-1.1, photographs
 /// that give good normals to 1.9-6.7; at 1.5 nearly half of a coefficient of C can be bias.
-pub(crate) const SMALLEST_NOISE_MARGIN: f64 = 1.5;
+pub(crate) const SMALLEST_NOISE_MARGIN: f64 = 1.15;
 
 /// Times that shadows are looked for.
 const SHADOW_ROUNDS: usize = 2;
@@ -369,11 +369,12 @@ impl Solution {
         let shadows =
             shadows::find(pixels, usable, count, fit.band, fit.noise_deviation, lmeds.seed, workspace)?;
         let (z, mut refit) = (fit.z(), None);
-        let mut left = self.refit(pixels, Usable { shadows, ..usable }, z, lmeds, workspace, &mut refit)?;
+        let mut left =
+            self.refit(pixels, Usable { shadows, ..usable }, count, z, lmeds, workspace, &mut refit)?;
         let confirmed = shadows.confirmed(pixels, usable, refit.as_ref()?.band)?;
         let lit = Usable { shadows: confirmed, ..usable };
         if confirmed != shadows {
-            left = self.refit(pixels, lit, z, lmeds, workspace, &mut refit)?;
+            left = self.refit(pixels, lit, count, z, lmeds, workspace, &mut refit)?;
         }
         self.fit = refit;
         self.inliers.usable = lit;
@@ -385,6 +386,7 @@ impl Solution {
         &self,
         pixels: &impl Pixels,
         usable: Usable,
+        all: usize,
         z: Coefficients,
         params: &lmeds::Params,
         workspace: &mut [f32],
@@ -392,7 +394,7 @@ impl Solution {
     ) -> Option<usize> {
         let count = Inliers::all(usable).count(pixels);
         let scale = lmeds::reciprocal_power_of_two(self.census.largest);
-        if count < lmeds::MIN_PIXELS {
+        if count < lmeds::MIN_PIXELS || 3 * count < all {
             return None;
         }
         // The band is about the z that it begins at: once more about its own.

@@ -209,7 +209,20 @@ fn presses_with_their_background() {
             println!("{:<10} {ours:5.2}, oracle {oracle:5.2}", fields[0]);
             medians.push(ours);
         } else {
-            println!("{:<10} {:?}", fields[0], solution.outcome);
+            println!(
+                "{:<10} {:?} {:?} {:?} {:?}",
+                fields[0],
+                solution.outcome,
+                solution.census,
+                solution.fit.map(|f| (
+                    f.noise_deviation,
+                    f.degenerate_noise_deviation,
+                    f.residual_deviation,
+                    f.dispersion,
+                    f.inliers
+                )),
+                solution.ellipsoid.is_some()
+            );
         }
     }
     let largest = medians.iter().copied().fold(0.0, f64::max);
