@@ -21,7 +21,7 @@ const SMALLEST_COUNT: f32 = 12.0;
 const CREASE: f32 = 4.0;
 
 /// Outliers may lie beside the surface: they count for less in where its middle is.
-const OUTLIER: f64 = 1.0 / 3.0;
+const OUTLIER: f64 = 0.5;
 
 /// How many of the smallest cells a picture has.
 pub(super) const fn count(width: usize, height: usize) -> usize {
