@@ -7,6 +7,7 @@
 
 use super::cells::{Cells, Moments, Plane, SIDE};
 use crate::mat3::{self, Mat3};
+use libm::sqrt;
 
 /// The picture is cut into so many parts along each side.
 pub(super) const PARTS: usize = 4;
@@ -14,34 +15,52 @@ pub(super) const PARTS: usize = 4;
 /// Cells with fewer inliers than this, of 16, have no gradient of their own.
 const SMALLEST_COUNT: f64 = 10.0;
 
-/// The weight of the second kind of slopes: both look at the same surface.
-const SECOND: f64 = 0.5;
+/// Weights that are tried, of one kind of slopes against the other.
+const WEIGHTS: usize = 11;
 
 /// Slopes of N over x and y, and the variance of their components.
 #[derive(Clone, Copy, Debug)]
 struct Slopes {
     along: [[f64; 3]; 2],
     variance: f64,
+    weight: f64,
+}
+
+/// Slopes of both kinds.
+type Pair = [[[f64; 3]; 2]; 2];
+
+/// The length of slopes: kappa times the square root of two where they are those of a sphere.
+fn size(slopes: [[f64; 3]; 2]) -> f64 {
+    sqrt(slopes.as_flattened().iter().map(|value| value * value).sum())
+}
+
+fn normalized(slopes: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
+    let length = size(slopes);
+    slopes.map(|slope| mat3::scale(slope, if length > 0.0 { 1.0 / length } else { 0.0 }))
 }
 
 impl Slopes {
-    /// The mean of `values` with the variance of a jackknife over them, when `whole` is what all parts say together.
-    fn jackknife(whole: [[f64; 3]; 2], replicates: &[Option<[[f64; 3]; 2]>]) -> Option<Self> {
+    /// Of `whole`, what all parts say together, the first kind with this weight and the second with the rest, and the
+    /// variance of a jackknife over what they say without one of them. Slopes are of unit length and become as long as `size`.
+    fn jackknife(whole: Pair, replicates: &[Option<Pair>], weight: f64, size: f64) -> Option<Self> {
         let used = replicates.iter().flatten().count();
         if used < 2 {
             return None;
         }
-        let mut sum = 0.0;
-        for i in 0..6 {
-            let component = |slopes: &[[f64; 3]; 2]| slopes.as_flattened().get(i).copied().unwrap_or(0.0);
-            let values = || replicates.iter().flatten().map(component);
+        let component = |[first, second]: &Pair, i: usize| {
+            let at = |slopes: &[[f64; 3]; 2]| slopes.as_flattened().get(i).copied().unwrap_or(0.0);
+            size * (weight * at(first) + (1.0 - weight) * at(second))
+        };
+        let (mut sum, mut along) = (0.0, [[0.0; 3]; 2]);
+        for (i, slot) in along.as_flattened_mut().iter_mut().enumerate() {
+            let values = || replicates.iter().flatten().map(|pair| component(pair, i));
             let mean = values().sum::<f64>() / used as f64;
             sum += values().map(|value| (value - mean) * (value - mean)).sum::<f64>();
+            *slot = component(&whole, i);
         }
         let variance = sum * (used - 1) as f64 / used as f64 / 6.0;
-        let size: f64 = whole.as_flattened().iter().map(|value| value * value).sum();
         // Nothing is more certain than this.
-        Some(Self { along: whole, variance: variance.max(1e-6 * size) })
+        Some(Self { along, variance: variance.max(1e-6 * size * size), weight })
     }
 
     /// The negative log likelihood that slopes in the frame of `rows` are kappa (1, 0, -kappa `x0`) and
@@ -58,8 +77,7 @@ impl Slopes {
 /// All that positions say.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outward {
-    regression: Slopes,
-    mean: Slopes,
+    slopes: Slopes,
     /// The sum of N.
     normal: [f64; 3],
     /// The mean position in pixels, x right and y up from the top left pixel.
@@ -139,30 +157,42 @@ impl Outward {
             }
         }
         let total = all_but(&moments, PARTS * PARTS);
+        let pair = |left_out: usize| {
+            let regression = all_but(&moments, left_out).plane()?.gradient;
+            Some([normalized(regression), normalized(mean_but(&gradients, left_out)?)])
+        };
         let mut left_out = [None; PARTS * PARTS];
         for (i, (slot, part)) in left_out.iter_mut().zip(&moments).enumerate() {
             if part.count() > 0.0 {
-                *slot = all_but(&moments, i).plane().map(|plane| plane.gradient);
+                *slot = pair(i);
             }
         }
-        let regression = Slopes::jackknife(total.plane()?.gradient, &left_out)?;
-        let mut left_out = [None; PARTS * PARTS];
-        for (i, (slot, (_, weight))) in left_out.iter_mut().zip(&gradients).enumerate() {
-            if *weight > 0.0 {
-                *slot = mean_but(&gradients, i);
+        let both = pair(PARTS * PARTS)?;
+        let size = size(total.plane()?.gradient);
+        let mut slopes: Option<Slopes> = None;
+        for i in 0..WEIGHTS {
+            let weight = i as f64 / (WEIGHTS - 1) as f64;
+            let mixed = Slopes::jackknife(both, &left_out, weight, size)?;
+            if slopes.is_none_or(|least| mixed.variance < least.variance) {
+                slopes = Some(mixed);
             }
         }
-        let mean = Slopes::jackknife(mean_but(&gradients, PARTS * PARTS)?, &left_out)?;
+        let slopes = slopes?;
+        #[cfg(feature = "dbg")]
+        {
+            extern crate std;
+            std::println!("MIX {}", slopes.weight);
+        }
         let [n, x, y, ..] = total.position;
         let middle = [x0 + x / n, y0 + y / n];
         let ([mx, my], [wx, wy]) = (middle, whole);
-        Some(Self { regression, mean, normal: total.normal, middle, from_middle: [mx - wx, my - wy] })
+        Some(Self { slopes, normal: total.normal, middle, from_middle: [mx - wx, my - wy] })
     }
 
     /// The negative log likelihood of `rows`.
     pub fn cost(&self, rows: &Mat3) -> f64 {
         let rows = &self.facing(*rows);
-        self.regression.cost(rows, self.from_middle) + SECOND * self.mean.cost(rows, self.from_middle)
+        self.slopes.cost(rows, self.from_middle)
     }
 
     /// `rows` with the sign of r3 that lets the surface face the camera.
