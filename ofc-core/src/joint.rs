@@ -135,7 +135,11 @@ pub fn estimate(image: &Image, inliers: &Inliers, root: &Mat3, workspace: &mut [
         }
     }
 
-    let chosen = admitted.iter().min_by(|a, b| a.spread.total_cmp(&b.spread));
+    let chosen = admitted.iter().reduce(
+        |chosen, larger| {
+            if larger.spread < GAIN * chosen.spread { larger } else { chosen }
+        },
+    );
     let form = chosen.map(|chosen| &chosen.form);
     let cost = |rows: &Mat3| prior(rows) + form.map_or(0.0, |form| form.cost(rows));
     let mut starts = search::starts();
@@ -173,6 +177,9 @@ impl Scale {
         mat3::dot(turn, mat3::apply(&self.information, turn)) <= LARGEST_DISTANCE
     }
 }
+
+/// Larger windows are taken for a variance that is smaller by this factor at least.
+const GAIN: f64 = 0.5;
 
 /// Squared, in standard deviations of three parameters.
 const LARGEST_DISTANCE: f64 = 5.0;

@@ -20,9 +20,6 @@ const SMALLEST_COUNT: f32 = 12.0;
 /// Cells whose residuals are above this many times the median are creases and edges rather than noise.
 const CREASE: f32 = 4.0;
 
-/// Outliers may lie beside the surface: they count for less in where its middle is.
-const OUTLIER: f64 = 0.5;
-
 /// How many of the smallest cells a picture has.
 pub(super) const fn count(width: usize, height: usize) -> usize {
     (width / SIDE).saturating_mul(height / SIDE)
@@ -176,13 +173,11 @@ impl<'w> Cells<'w> {
                     image.read(from, y * SIDE + row, window);
                     *bits = inliers.bits(window);
                     let exposed = inliers.usable.exposed(window);
-                    let shaded = exposed & !inliers.usable.shadows.lit(window, exposed);
                     for_each_bit(exposed, |i| {
-                        let weight = if (*bits | shaded) >> i & 1 == 1 { 1.0 } else { OUTLIER };
                         let [x, y] = &mut whole;
-                        count += weight;
-                        *x += weight * (from + i) as f64;
-                        *y -= weight * (y0 + row) as f64;
+                        count += 1.0;
+                        *x += (from + i) as f64;
+                        *y -= (y0 + row) as f64;
                     });
                 }
                 let first = y * width + from / SIDE;
