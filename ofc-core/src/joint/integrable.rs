@@ -40,7 +40,7 @@ const MEDIAN_OF_TWO: f64 = core::f64::consts::LN_2;
 
 /// Systematic errors: as if there were this many independent windows where they explain all of s, and more with the cube of
 /// the share that they explain.
-const SYSTEMATIC_WINDOWS: f64 = 0.3;
+const SYSTEMATIC_WINDOWS: f64 = 0.1;
 
 /// The scatter over sixteen parts at most, neighbours of each other, is less than it would be over pictures.
 const NEIGHBOURS: f64 = 2.0;

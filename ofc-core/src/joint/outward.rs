@@ -10,10 +10,13 @@ use crate::mat3::{self, Mat3};
 use libm::sqrt;
 
 /// The picture is cut into so many parts along each side.
-pub(super) const PARTS: usize = 4;
+pub(super) const PARTS: usize = 5;
 
 /// Cells with fewer inliers than this, of 16, have no gradient of their own.
 const SMALLEST_COUNT: f64 = 10.0;
+
+/// Parts are not independent: neighbours bulge together.
+const NEIGHBOURS: f64 = 1.5;
 
 /// Weights that are tried, of one kind of slopes against the other.
 const WEIGHTS: usize = 11;
@@ -58,7 +61,7 @@ impl Slopes {
             sum += values().map(|value| (value - mean) * (value - mean)).sum::<f64>();
             *slot = component(&whole, i);
         }
-        let variance = sum * (used - 1) as f64 / used as f64 / 6.0;
+        let variance = NEIGHBOURS * sum * (used - 1) as f64 / used as f64 / 6.0;
         // Nothing is more certain than this.
         Some(Self { along, variance: variance.max(1e-6 * size * size), weight })
     }
