@@ -417,6 +417,7 @@ impl Usable {
     }
 
     /// Those with shaded ones among them.
+    #[must_use]
     #[inline(never)]
     pub fn exposed(&self, window: &Window) -> u64 {
         // Floats are in the order of their bits as integers with a sign, but for negative ones, and what is not finite

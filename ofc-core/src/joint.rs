@@ -74,14 +74,20 @@ pub const APART: f64 = 0.2;
 /// Square windows of so many pixels, smallest first.
 const WINDOW_SIZES: [usize; 4] = [8, 16, 32, 64];
 
+/// Larger windows are taken for a variance that is smaller by this factor at least.
+const GAIN: f64 = 0.5;
+
+/// Estimates from windows of two sizes agree up to this distance, squared, in standard deviations of three parameters.
+const LARGEST_DISTANCE: f64 = 5.0;
+
 /// How many `f32` [`estimate`] needs for a picture of this size: at most two a pixel.
 #[must_use]
 pub const fn workspace_len(width: usize, height: usize) -> usize {
     cells::count(width, height).saturating_mul(cells::NUMBERS + integrable::NUMBERS)
 }
 
-/// The transformation of the normals `root` rho of the inliers; `None` where they are too
-/// few or too scattered to say anything.
+/// The transformation of the normals `root` rho of the inliers; `None` where they are too few or too scattered to say
+/// anything.
 ///
 /// # Units
 /// `root` in (pixel value)^-1.
@@ -103,28 +109,6 @@ pub fn estimate(image: &Image, inliers: &Inliers, root: &Mat3, workspace: &mut [
         if let Some((form, rows)) = Integrable::of(&cells, &noise, &outward, best.rows, &mut radial, rest) {
             let information = search::hessian(&rows, |rows| form.cost(rows) + prior(rows));
             let spread = trace(&inverse(&information, 1.0 / LARGEST_VARIANCE));
-            #[cfg(feature = "dbg")]
-            {
-                extern crate std;
-                let simple = search::hessian(&rows, |rows| form.simple(rows));
-                let simple = trace(&inverse(&simple, 1.0 / LARGEST_VARIANCE));
-                let pure =
-                    crate::orthogonal::polish::polish(rows, form.cost(&rows), 300, |rows| form.cost(rows)).0;
-                std::println!(
-                    "PURE {} {} {} {:?}",
-                    2 * cells.side(),
-                    form.cost(&rows) - form.cost(&pure),
-                    0,
-                    pure
-                );
-                std::println!(
-                    "SCALE {} {} {} {:?}",
-                    2 * cells.side(),
-                    libm::sqrt(spread * 2.0 / 3.0) * 57.3,
-                    libm::sqrt(simple * 2.0 / 3.0) * 57.3,
-                    rows
-                );
-            }
             let scale = Scale { form, rows, information, spread };
             if !admitted.iter().all(|smaller| smaller.agrees(&rows)) || admitted.push(scale).is_err() {
                 break;
@@ -177,12 +161,6 @@ impl Scale {
         mat3::dot(turn, mat3::apply(&self.information, turn)) <= LARGEST_DISTANCE
     }
 }
-
-/// Larger windows are taken for a variance that is smaller by this factor at least.
-const GAIN: f64 = 0.5;
-
-/// Squared, in standard deviations of three parameters.
-const LARGEST_DISTANCE: f64 = 5.0;
 
 fn trace(a: &Mat3) -> f64 {
     let [[a, ..], [_, b, _], [.., c]] = *a;

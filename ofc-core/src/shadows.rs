@@ -110,11 +110,6 @@ impl Shadows {
                 *outliers += (bits & !inside).count_ones() as usize;
             }
         });
-        #[cfg(feature = "dbg")]
-        {
-            extern crate std;
-            std::println!("{:?} {:?}", self.faces, shaded);
-        }
         let mut confirmed = *self;
         for (face, [all, outliers]) in confirmed.faces.iter_mut().zip(shaded) {
             if (outliers as f64) < SMALLEST_OUTLIERS * all as f64 {

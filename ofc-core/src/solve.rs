@@ -1,11 +1,12 @@
 //! The whole pipeline of section 3.4 over one workspace.
 
 mod fallback;
+mod lit;
 
 pub use fallback::SlantFallback;
 
 use crate::constrained_slant::{self, Candidates, MAX_CANDIDATES, SlantRoot};
-use crate::ellipsoid::{self, Coefficients, Ellipsoid};
+use crate::ellipsoid::{self, Ellipsoid};
 use crate::image::{Census, Image, Usable};
 use crate::inliers::{Band, Inliers};
 use crate::integrability;
@@ -16,7 +17,6 @@ use crate::mat3;
 use crate::orientation::{self, Orientation, RANK_THRESHOLD};
 use crate::pixels::Pixels;
 use crate::rank::{self, Rank};
-use crate::shadows;
 use crate::tilt::{TiltEstimator, Tilts};
 use heapless::Vec;
 use libm::{atan2, hypot};
@@ -25,9 +25,6 @@ use libm::{atan2, hypot};
 /// scenes (cylinders, planes, cones, ramps, mixtures of colors, with and without noise) come to 0.2-1.1, photographs
 /// that give good normals to 1.9-6.7; at 1.5 nearly half of a coefficient of C can be bias.
 pub(crate) const SMALLEST_NOISE_MARGIN: f64 = 1.15;
-
-/// Times that shadows are looked for.
-const SHADOW_ROUNDS: usize = 2;
 
 /// How the orthogonal transformation that the regression leaves open is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -338,73 +335,6 @@ impl Solution {
         }
         self.outcome = Outcome::NoTilt;
         Ok(())
-    }
-
-    /// Looks for shadows, and fits anew without them.
-    #[inline(never)]
-    fn leave_out_shadows(&mut self, pixels: &impl Pixels, params: &Params, workspace: &mut [f32]) {
-        let count = self.fit.as_ref().map_or(0, |fit| fit.usable);
-        let mut left = count;
-        // An ellipsoid that shadows no longer bend shows more of them.
-        for _ in 0..SHADOW_ROUNDS {
-            let Some(fewer) = self.leave_out_faces(pixels, count, params, workspace) else { break };
-            left = fewer;
-        }
-        // The pixels may be a sample of those that were counted.
-        let shaded = self.census.usable as u128 * (count - left) as u128 / count.max(1) as u128;
-        self.census.usable -= shaded as usize;
-        self.census.shaded = shaded as usize;
-    }
-
-    /// One round over the `count` usable pixels: how many are left; `None`, with nothing done, where there are no shadows.
-    fn leave_out_faces(
-        &mut self,
-        pixels: &impl Pixels,
-        count: usize,
-        params: &Params,
-        workspace: &mut [f32],
-    ) -> Option<usize> {
-        let (fit, lmeds) = (self.fit.as_ref()?, &params.lmeds);
-        let usable = Usable::below(self.inliers.usable.saturation);
-        let shadows =
-            shadows::find(pixels, usable, count, fit.band, fit.noise_deviation, lmeds.seed, workspace)?;
-        let (z, mut refit) = (fit.z(), None);
-        let mut left =
-            self.refit(pixels, Usable { shadows, ..usable }, count, z, lmeds, workspace, &mut refit)?;
-        let confirmed = shadows.confirmed(pixels, usable, refit.as_ref()?.band)?;
-        let lit = Usable { shadows: confirmed, ..usable };
-        if confirmed != shadows {
-            left = self.refit(pixels, lit, count, z, lmeds, workspace, &mut refit)?;
-        }
-        self.fit = refit;
-        self.inliers.usable = lit;
-        Some(left)
-    }
-
-    /// Puts the fit that begins at `z` into `out`, and says how many pixels it is of.
-    fn refit(
-        &self,
-        pixels: &impl Pixels,
-        usable: Usable,
-        all: usize,
-        z: Coefficients,
-        params: &lmeds::Params,
-        workspace: &mut [f32],
-        out: &mut Option<Fit>,
-    ) -> Option<usize> {
-        let count = Inliers::all(usable).count(pixels);
-        let scale = lmeds::reciprocal_power_of_two(self.census.largest);
-        if count < lmeds::MIN_PIXELS || 3 * count < all {
-            return None;
-        }
-        // The band is about the z that it begins at: once more about its own.
-        let mut z = z;
-        for _ in 0..2 {
-            let scaled = z.map(|c| c / (scale * scale));
-            lmeds::judge(pixels, usable, count, scale, Some(scaled), params, workspace, out).ok()?;
-            z = out.as_ref()?.z();
-        }
-        Some(count)
     }
 
     /// Ends with the choice of slants that is in its place.

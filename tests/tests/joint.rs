@@ -162,7 +162,7 @@ fn rendered_scenes() {
         percent(told, all),
         percent(right, convex)
     );
-    assert!(percent(near, all) >= 60.0 && percent(within_two, all) >= 80.0 && percent(told, all) >= 88.0);
+    assert!(percent(near, all) >= 85.0 && percent(within_two, all) >= 95.0 && percent(told, all) >= 95.0);
     assert!(percent(right, convex) >= 95.0);
     assert!(near > 3 * paper_near);
 }
@@ -171,7 +171,7 @@ fn rendered_scenes() {
 fn photographs() {
     for (name, limit) in [
         ("cat_figurine", 4.5),
-        ("gelsight_ball_6mm", 5.0),
+        ("gelsight_ball_6mm", 4.6),
         ("gelsight_ball_9mm", 8.0),
         ("gelsight_ball_4mm", 14.5),
     ] {
@@ -241,7 +241,7 @@ fn presses_with_their_background() {
     }
     let largest = medians.iter().copied().fold(0.0, f64::max);
     println!("median of medians {:.2}, largest {largest:.2}, answered {}", median(&medians), medians.len());
-    assert!(medians.len() >= 11 && median(&medians) <= 5.0 && largest <= 9.0);
+    assert!(medians.len() == 12 && median(&medians) <= 4.6 && largest <= 9.0);
 }
 
 #[test]

@@ -38,11 +38,11 @@ const CUT: f64 = 4.0;
 const MEDIAN_OF_ONE: f64 = 0.454_936;
 const MEDIAN_OF_TWO: f64 = core::f64::consts::LN_2;
 
-/// Systematic errors: as if there were this many independent windows where they explain all of s, and more with the cube of
-/// the share that they explain.
+/// Systematic errors: as if there were so few independent windows where they explain all of s, and more with the cube of the
+/// share that they explain.
 const SYSTEMATIC_WINDOWS: f64 = 0.1;
 
-/// The scatter over sixteen parts at most, neighbours of each other, is less than it would be over pictures.
+/// The scatter over twenty-five parts at most, neighbours of each other, is less than it would be over pictures.
 const NEIGHBOURS: f64 = 2.0;
 
 /// What windows of one size say.
@@ -116,7 +116,8 @@ impl Record {
 
 impl Integrable {
     /// The windows of two by two cells, and the rows that these and `outward` say together, beginning at `rows`; `None`
-    /// where there are too few. `scratch` holds [`NUMBERS`] for every cell.
+    /// where there are too few. `least_radial` is the least systematic error over windows so far: in larger ones curvature looks
+    /// like it. `scratch` holds [`NUMBERS`] for every cell.
     pub fn of(
         cells: &Cells,
         noise: &Mat3,
@@ -172,11 +173,6 @@ impl Integrable {
     /// The negative log likelihood of `rows`.
     pub fn cost(&self, rows: &Mat3) -> f64 {
         self.factor * self.ratio(rows)
-    }
-
-    #[cfg(feature = "dbg")]
-    pub fn simple(&self, rows: &Mat3) -> f64 {
-        0.125 * self.count as f64 * self.ratio(rows)
     }
 
     fn ratio(&self, rows: &Mat3) -> f64 {
@@ -288,7 +284,8 @@ fn weigh(records: &[[f32; RECORD]], noise: &Mat3, rows: &Mat3, model: f64, robus
 
 impl Sums {
     /// The factor that makes a log likelihood of the ratio of `form` near its minimum `rows`: 3 over the trace of
-    /// H^-1 G, with H its second derivatives and G the scatter of its gradient, and less where errors are systematic:
+    /// H^-1 G, with H its second derivatives and G the scatter of its gradient, but no more than independent windows would
+    /// give, and less where errors are systematic:
     /// `radial` is the share of s^2 that they are.
     fn information(&self, form: &Integrable, rows: &Mat3, radial: f64) -> Option<f64> {
         let expected = form.noise.at(rows) + form.model;

@@ -3,7 +3,10 @@
 //! For a sphere the slopes of n over x and y are (1, 0, 0) and (0, 1, 0) over its radius. For other closed surfaces they
 //! are so on the whole, as far as the surface is round; how far that is, the parts of the picture tell by how much each of
 //! them matters. Slopes are taken twice: by regression over all inliers, and as the mean of the gradients of small cells,
-//! which the border alone decides and which Pentland's tilts are made of.
+//! which the border alone decides and which Pentland's tilts are made of. They are mixed so that the parts agree best.
+//!
+//! Where a part of the surface is shaded the rest does not face the camera as a whole: n3 then falls with the distance from
+//! the middle of all of the surface, by its curvature.
 
 use super::cells::{Cells, Moments, Plane, SIDE};
 use crate::mat3::{self, Mat3};
@@ -26,7 +29,6 @@ const WEIGHTS: usize = 11;
 struct Slopes {
     along: [[f64; 3]; 2],
     variance: f64,
-    weight: f64,
 }
 
 /// Slopes of both kinds.
@@ -63,7 +65,7 @@ impl Slopes {
         }
         let variance = NEIGHBOURS * sum * (used - 1) as f64 / used as f64 / 6.0;
         // Nothing is more certain than this.
-        Some(Self { along, variance: variance.max(1e-6 * size * size), weight })
+        Some(Self { along, variance: variance.max(1e-6 * size * size) })
     }
 
     /// The negative log likelihood that slopes in the frame of `rows` are kappa (1, 0, -kappa `x0`) and
@@ -181,11 +183,6 @@ impl Outward {
             }
         }
         let slopes = slopes?;
-        #[cfg(feature = "dbg")]
-        {
-            extern crate std;
-            std::println!("MIX {}", slopes.weight);
-        }
         let [n, x, y, ..] = total.position;
         let middle = [x0 + x / n, y0 + y / n];
         let ([mx, my], [wx, wy]) = (middle, whole);
