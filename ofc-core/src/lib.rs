@@ -39,3 +39,4 @@ pub mod solve;
 pub mod stream;
 pub mod student_t;
 pub mod tilt;
+pub mod uncertainty;

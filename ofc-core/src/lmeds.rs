@@ -19,7 +19,7 @@ pub(crate) use search::search;
 use crate::ellipsoid::Coefficients;
 use crate::image::{Census, Image, Usable};
 use crate::inliers::Band;
-use crate::regression::{Estimate, TERMS};
+use crate::regression::{Estimate, TERMS, Triangle};
 use crate::rng::Rng;
 use libm::{ceil, log, log1p};
 use search::Sample;
@@ -154,6 +154,9 @@ pub struct Fit {
     pub band: Band,
     /// The reweighted fit: least squares over the inliers.
     pub coefficients: [Estimate; TERMS],
+    /// What squares and products of the errors of these coefficients are expected to be: their covariance, and the square of
+    /// the bias that noise makes, which may be the larger part. The upper triangle, row by row.
+    pub covariance: Triangle,
     /// The standard deviation of the inliers' residuals under the reweighted fit.
     pub residual_deviation: f64,
     /// The singular values of the inliers' colors, root mean square, descending, in pixel values.

@@ -61,6 +61,7 @@ impl Rejection {
             r_squared: 1.0 - self.median_residual * self.median_residual,
             band: self.band,
             coefficients: refit.coefficients,
+            covariance: refit.covariance,
             residual_deviation: refit.residual_deviation,
             color_deviations: refit.color_deviations,
             noise_deviation: refit.noise_deviation,

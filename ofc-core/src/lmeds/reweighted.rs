@@ -6,7 +6,7 @@ use crate::image::{Usable, for_each_bit};
 use crate::inliers::Inliers;
 use crate::mat3::symmetric_eigen;
 use crate::pixels::Pixels;
-use crate::regression::{self, Estimate, LeastSquares, Moments, TERMS};
+use crate::regression::{self, Estimate, LeastSquares, Moments, TERMS, Triangle};
 use libm::{fabsf, sqrt};
 
 /// The scaled z of all usable pixels.
@@ -59,6 +59,7 @@ pub(super) fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
 /// Least squares over inliers.
 pub(crate) struct Refit {
     pub coefficients: [Estimate; TERMS],
+    pub covariance: Triangle,
     pub residual_deviation: f64,
     pub noise_deviation: f64,
     pub degenerate_noise_deviation: f64,
@@ -86,7 +87,8 @@ impl Refit {
             return None;
         }
         let variance = residual_sum / (f64::from(moments.count) - TERMS as f64);
-        let noise = moments.noise(&fit.coefficients, residual_sum) / scale;
+        let noise = (moments.noise(&fit.coefficients, residual_sum) / scale).max(rounding);
+        let covariance = moments.error_covariance(fit, variance, noise * scale, scale * scale);
         let degenerate_noise_deviation = moments.degenerate_noise(fit) / scale;
         let color_deviations = deviations(moments, scale);
         let mut coefficients = regression::estimates(fit, variance, moments.count, confidence);
@@ -97,8 +99,9 @@ impl Refit {
         }
         Some(Self {
             coefficients,
+            covariance,
             residual_deviation: sqrt(variance),
-            noise_deviation: noise.max(rounding),
+            noise_deviation: noise,
             degenerate_noise_deviation,
             color_deviations,
             count: moments.count,

@@ -158,6 +158,7 @@ impl State {
         fit.r_squared = 1.0 - fit.median_residual * fit.median_residual;
         fit.band = Band::residual(z, fit.dispersion, rejection);
         fit.coefficients = refit.coefficients;
+        fit.covariance = refit.covariance;
         fit.residual_deviation = refit.residual_deviation;
         fit.color_deviations = refit.color_deviations;
         fit.noise_deviation = refit.noise_deviation;
