@@ -9,6 +9,7 @@
 //! P. J. Rousseeuw, K. Van Driessen, "Computing LTS regression for large data sets", 2006 (concentration steps).
 
 mod judge;
+mod noise;
 mod reweighted;
 mod search;
 
@@ -164,6 +165,8 @@ pub struct Fit {
     /// The noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values; at least
     /// what rounding to the picture's steps makes.
     pub noise_deviation: f64,
+    /// The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single pixels.
+    pub color_noise: f64,
     /// The noise in each channel with which colors that do not determine C could look like these. The coefficients are
     /// biased by about (`noise_deviation` / `degenerate_noise_deviation`)^2, whatever their standard errors say.
     pub degenerate_noise_deviation: f64,

@@ -4,7 +4,7 @@
 //! `T = F^T dC F / 2 + [w]x`: the symmetric part is all that C can say (G^T G alone is known), the other part all that it
 //! cannot. So the covariance of T follows from those of C ([`Fit::covariance`]) and of the rotation
 //! ([`Joint::covariance`]), that of F from dF = -F T, and that of a normal from dn = T n + G d rho, d rho being noise of
-//! equal deviation in every channel ([`Fit::noise_deviation`], which holds what rounding adds).
+//! equal deviation in every channel ([`Fit::color_noise`], which holds what rounding adds).
 //!
 //! # The 1-sigma angle
 //! That below which 68.3 % of the errors are expected to lie, as people expect of one sigma; 95.4 to 99.0 % then lie below
@@ -15,7 +15,7 @@
 //! between a surface and its twin ([`Joint::dome`]), and orientations far from the best one ([`Joint::second_best`]).
 //!
 //! [`Fit::covariance`]: crate::lmeds::Fit::covariance
-//! [`Fit::noise_deviation`]: crate::lmeds::Fit::noise_deviation
+//! [`Fit::color_noise`]: crate::lmeds::Fit::color_noise
 //! [`Joint::covariance`]: crate::joint::Joint::covariance
 //! [`Joint::dome`]: crate::joint::Joint::dome
 //! [`Joint::second_best`]: crate::joint::Joint::second_best
@@ -61,7 +61,7 @@ impl Sources {
             f_inverse: choice.orientation.f_inverse,
             c: fit.covariance,
             rotation: joint.covariance,
-            noise: fit.noise_deviation,
+            noise: fit.color_noise,
         })
     }
 }

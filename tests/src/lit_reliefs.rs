@@ -21,7 +21,13 @@ pub fn reliefs() -> [(&'static str, bool, Relief); 7] {
 }
 
 /// The picture, eight bits, and its true normals, zero beside the surface.
-pub fn rendered(relief: &Relief, a: &[f64; 9], b: &[f64; 9], noise: f64, seed: u64) -> (Vec<u8>, Vec<[f32; 3]>) {
+pub fn rendered(
+    relief: &Relief,
+    a: &[f64; 9],
+    b: &[f64; 9],
+    noise: f64,
+    seed: u64,
+) -> (Vec<u8>, Vec<[f32; 3]>) {
     let (width, height) = (relief.width, relief.height);
     let bytes = relief.bytes();
     let mut pixels = vec![0; width * height * 3];

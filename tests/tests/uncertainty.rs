@@ -98,12 +98,13 @@ fn shares_below_one_two_and_three_sigma() {
                     // angle of r
                     ((r[0][0] + r[1][1] + r[2][2] - 1.0) / 2.0).clamp(-1.0, 1.0).acos()
                 };
-                let wv = [(r[2][1]-r[1][2])/2.0,(r[0][2]-r[2][0])/2.0,(r[1][0]-r[0][1])/2.0];
+                let wv = [(r[2][1] - r[1][2]) / 2.0, (r[0][2] - r[2][0]) / 2.0, (r[1][0] - r[0][1]) / 2.0];
                 let inv = ofc_tests::linear::inverse(sources.rotation);
-                let maha = (dot(wv, apply(inv, wv))/3.0).sqrt();
+                let maha = (dot(wv, apply(inv, wv)) / 3.0).sqrt();
                 ratios.push(maha);
                 // e: symmetric part relative to predicted
-                let noise_only = Uncertainty::new(&Sources { c: [0.0; 21], rotation: [[0.0; 3]; 3], ..sources });
+                let noise_only =
+                    Uncertainty::new(&Sources { c: [0.0; 21], rotation: [[0.0; 3]; 3], ..sources });
                 let no_rot = Uncertainty::new(&Sources { rotation: [[0.0; 3]; 3], ..sources });
                 let everything = Uncertainty::new(&sources);
                 let mut own = [Shares::default(); 3];
@@ -118,8 +119,13 @@ fn shares_below_one_two_and_three_sigma() {
                 let trace = sources.rotation[0][0] + sources.rotation[1][1] + sources.rotation[2][2];
                 println!(
                     "{name:<8} {number} {noise} noise {:5.3} of {:5.3} | {:5.1?} | {:5.1?} | {:5.1?} | w {:5.2} of {:5.2} deg, maha {maha:5.2}",
-                    sources.noise, (noise * noise + 1.0f64 / 12.0).sqrt(),
-                    own[0].percent(), own[1].percent(), own[2].percent(), w.to_degrees(), trace.sqrt().to_degrees()
+                    sources.noise,
+                    (noise * noise + 1.0f64 / 12.0).sqrt(),
+                    own[0].percent(),
+                    own[1].percent(),
+                    own[2].percent(),
+                    w.to_degrees(),
+                    trace.sqrt().to_degrees()
                 );
                 for (sum, own) in scene.iter_mut().zip(&own) {
                     sum.add_shares(own);
@@ -127,7 +133,12 @@ fn shares_below_one_two_and_three_sigma() {
             }
         }
         ratios.sort_by(f64::total_cmp);
-        println!("{name:<8} ALL  {:5.1?} | {:5.1?} | {:5.1?}  maha {ratios:.2?}", scene[0].percent(), scene[1].percent(), scene[2].percent());
+        println!(
+            "{name:<8} ALL  {:5.1?} | {:5.1?} | {:5.1?}  maha {ratios:.2?}",
+            scene[0].percent(),
+            scene[1].percent(),
+            scene[2].percent()
+        );
         for (sum, own) in sums.iter_mut().zip(&scene) {
             sum.add_shares(own);
         }

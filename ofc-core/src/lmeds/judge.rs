@@ -1,5 +1,6 @@
 //! From the z that was found to the fit: the objective over all pixels, and the rejection that follows from it.
 
+use super::noise::noise;
 use super::reweighted::{Refit, deviations, moments, reweighted};
 use super::{CONSISTENCY, Fit, FitError, Method, Params};
 use crate::ellipsoid::{Coefficients, quadratic_form};
@@ -30,7 +31,9 @@ pub(crate) fn judge(
         Rejection::new(robust, count, median_residual(pixels, usable, &robust, workspace), params);
     let inliers = Inliers { residual: rejection.band, ..Inliers::all(usable) };
     let refit = reweighted(pixels, &inliers, scale, params.limits_confidence);
-    rejection.finish(refit.as_ref().ok_or_else(degenerate)?, count, params, out);
+    let mut refit = refit.ok_or_else(degenerate)?;
+    refit.color_noise = refit.color_noise.max(noise(pixels, &inliers, &refit.z(), workspace));
+    rejection.finish(&refit, count, params, out);
     Ok(())
 }
 
@@ -65,6 +68,7 @@ impl Rejection {
             residual_deviation: refit.residual_deviation,
             color_deviations: refit.color_deviations,
             noise_deviation: refit.noise_deviation,
+            color_noise: refit.color_noise,
             degenerate_noise_deviation: refit.degenerate_noise_deviation,
             usable: count,
             inliers: refit.count as usize,
