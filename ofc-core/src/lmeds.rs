@@ -155,8 +155,9 @@ pub struct Fit {
     pub band: Band,
     /// The reweighted fit: least squares over the inliers.
     pub coefficients: [Estimate; TERMS],
-    /// What squares and products of the errors of these coefficients are expected to be: their covariance, and the square of
-    /// the bias that noise makes, which may be the larger part. The upper triangle, row by row.
+    /// What squares and products of the errors of these coefficients are expected to be: the covariance of least squares,
+    /// the square of the bias that noise makes, and that of the difference from `robust`, toward which its inliers pull the fit;
+    /// on large pictures the first is the smallest. The upper triangle, row by row.
     pub covariance: Triangle,
     /// The standard deviation of the inliers' residuals under the reweighted fit.
     pub residual_deviation: f64,

@@ -9,7 +9,7 @@
 
 mod errors;
 
-pub use errors::{Triangle, whole};
+pub use errors::{Triangle, add_square, whole};
 
 use crate::ellipsoid::Coefficients;
 use crate::mat6::{self, Mat6};

@@ -32,6 +32,7 @@ pub(crate) fn judge(
     let inliers = Inliers { residual: rejection.band, ..Inliers::all(usable) };
     let refit = reweighted(pixels, &inliers, scale, params.limits_confidence);
     let mut refit = refit.ok_or_else(degenerate)?;
+    refit.expect_pull(&robust);
     refit.color_noise = refit.color_noise.max(noise(pixels, &inliers, &refit.z(), workspace));
     rejection.finish(&refit, count, params, out);
     Ok(())

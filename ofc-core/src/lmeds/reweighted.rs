@@ -75,6 +75,15 @@ impl Refit {
         self.coefficients.map(|estimate| estimate.value)
     }
 
+    /// Inliers of another form pull what is fitted to them toward it: as much as the two differ may be left.
+    pub fn expect_pull(&mut self, form: &Coefficients) {
+        let mut difference = self.z();
+        for (entry, other) in difference.iter_mut().zip(form) {
+            *entry -= other;
+        }
+        regression::add_square(&mut self.covariance, &difference);
+    }
+
     /// From the sums of colors times `scale`, their least squares, and the sum of squares of its residuals. Noise is at least
     /// `rounding`.
     pub fn new(

@@ -20,6 +20,15 @@ pub fn whole(triangle: &Triangle) -> Mat6 {
     matrix
 }
 
+/// Adds the squares and products of errors.
+pub fn add_square(triangle: &mut Triangle, errors: &[f64; TERMS]) {
+    let products =
+        errors.iter().enumerate().flat_map(|(i, one)| errors.iter().skip(i).map(move |other| one * other));
+    for (entry, product) in triangle.iter_mut().zip(products) {
+        *entry += product;
+    }
+}
+
 /// Row and column of each entry.
 fn places() -> impl Iterator<Item = (usize, usize)> {
     (0..TERMS).flat_map(|i| (i..TERMS).map(move |j| (i, j)))
@@ -43,13 +52,12 @@ impl Moments {
         }
         let variance = variance * factor * factor;
         let mut triangle = [0.0; 21];
-        let columns = fit.inverse.iter().zip(bias).enumerate();
-        let entries = columns.flat_map(|(i, (column, one))| {
-            column.iter().zip(bias).skip(i).map(move |(entry, other)| variance * entry + one * other)
-        });
+        let columns = fit.inverse.iter().enumerate();
+        let entries = columns.flat_map(|(i, column)| column.iter().skip(i).map(|entry| variance * entry));
         for (place, entry) in triangle.iter_mut().zip(entries) {
             *place = entry;
         }
+        add_square(&mut triangle, &bias);
         triangle
     }
 }

@@ -142,10 +142,11 @@ impl State {
     /// Takes the fit of the sums over, with the bands that follow from it, and says by how much the dispersion grew.
     #[inline(never)]
     fn adopt_fit(&mut self) -> Option<f64> {
-        let refit = self.refit()?;
+        let mut refit = self.refit()?;
         let rejection = self.params.solve.lmeds.rejection;
         let fit = self.solution.fit.as_mut()?;
         let z = refit.z();
+        refit.expect_pull(&fit.band.form);
         // An exact fit stays one.
         let dispersion = if fit.residual_deviation > 0.0 {
             refit.residual_deviation / fit.residual_deviation
