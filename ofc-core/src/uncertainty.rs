@@ -2,7 +2,7 @@
 //!
 //! With n = G rho, G = F^-1, and G^T G = C, an error dC of C and a small rotation w change G by T G, to first order, with
 //! `T = F^T dC F / 2 + [w]x`: the symmetric part is all that C can say (G^T G alone is known), the other part all that it
-//! cannot. So the covariance of T follows from those of C ([`Fit::covariance`]) and of the rotation
+//! cannot (and the first turns the best rotation as well, see [`of_turn`]). So the covariance of T follows from those of C ([`Fit::covariance`]) and of the rotation
 //! ([`Joint::covariance`]), that of F from dF = -F T, and that of a normal from dn = T n + G d rho, d rho being noise of
 //! equal deviation in every channel ([`Fit::color_noise`], which holds what rounding adds).
 //!
