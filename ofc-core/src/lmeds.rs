@@ -167,7 +167,7 @@ pub struct Fit {
     /// what rounding to the picture's steps makes.
     pub noise_deviation: f64,
     /// The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single pixels.
-    pub color_noise: f64,
+    pub pixel_noise: f64,
     /// The noise in each channel with which colors that do not determine C could look like these. The coefficients are
     /// biased by about (`noise_deviation` / `degenerate_noise_deviation`)^2, whatever their standard errors say.
     pub degenerate_noise_deviation: f64,

@@ -2,9 +2,10 @@
 //!
 //! With n = G rho, G = F^-1, and G^T G = C, an error dC of C and a small rotation w change G by T G, to first order, with
 //! `T = F^T dC F / 2 + [w]x`: the symmetric part is all that C can say (G^T G alone is known), the other part all that it
-//! cannot (and the first turns the best rotation as well, see [`of_turn`]). So the covariance of T follows from those of C ([`Fit::covariance`]) and of the rotation
-//! ([`Joint::covariance`]), that of F from dF = -F T, and that of a normal from dn = T n + G d rho, d rho being noise of
-//! equal deviation in every channel ([`Fit::color_noise`], which holds what rounding adds).
+//! cannot (though the first turns the best rotation as well, see [`of_turn`]). So the covariance of T follows from those
+//! of C ([`Fit::covariance`]) and of the rotation ([`Joint::covariance`]), that of F from dF = -F T, and that of a normal
+//! from dn = T n + G d rho, d rho being noise of equal deviation in every channel ([`Fit::pixel_noise`], which holds what
+//! rounding adds).
 //!
 //! # The 1-sigma angle
 //! That below which 68.3 % of the errors are expected to lie, as people expect of one sigma; 95.4 to 99.0 % then lie below
@@ -15,7 +16,7 @@
 //! between a surface and its twin ([`Joint::dome`]), and orientations far from the best one ([`Joint::second_best`]).
 //!
 //! [`Fit::covariance`]: crate::lmeds::Fit::covariance
-//! [`Fit::color_noise`]: crate::lmeds::Fit::color_noise
+//! [`Fit::pixel_noise`]: crate::lmeds::Fit::pixel_noise
 //! [`Joint::covariance`]: crate::joint::Joint::covariance
 //! [`Joint::dome`]: crate::joint::Joint::dome
 //! [`Joint::second_best`]: crate::joint::Joint::second_best
@@ -61,7 +62,7 @@ impl Sources {
             f_inverse: choice.orientation.f_inverse,
             c: fit.covariance,
             rotation: joint.covariance,
-            noise: fit.color_noise,
+            noise: fit.pixel_noise,
         })
     }
 }

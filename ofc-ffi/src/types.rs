@@ -295,12 +295,18 @@ pub struct ofc_color_fit {
     pub r_squared: f64,
     /// The reweighted fit: least squares over the inliers.
     pub coefficients: [ofc_estimate; 6],
+    /// What squares and products of the errors of these coefficients are expected to be, the upper triangle row by row:
+    /// the covariance of least squares, the square of the bias that noise makes, and that of the difference from `robust`.
+    pub covariance: [f64; 21],
     /// Standard deviation of the inliers' residuals under the reweighted fit.
     pub residual_deviation: f64,
     /// Root mean square of the inliers' colors along their principal axes, descending, in pixel values.
     pub color_deviations: [f64; 3],
     /// Noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values.
     pub noise_deviation: f64,
+    /// The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single
+    /// pixels.
+    pub pixel_noise: f64,
     /// Noise in each channel with which colors that do not determine C could look like these. solve refuses where it
     /// is below 1.5 times noise_deviation; C is biased by about the inverse square of that ratio.
     pub degenerate_noise_deviation: f64,
@@ -319,9 +325,11 @@ impl From<Fit> for ofc_color_fit {
             r_squared,
             band: _,
             coefficients,
+            covariance,
             residual_deviation,
             color_deviations,
             noise_deviation,
+            pixel_noise,
             degenerate_noise_deviation,
             usable: _,
             inliers,
@@ -333,9 +341,11 @@ impl From<Fit> for ofc_color_fit {
             dispersion,
             r_squared,
             coefficients: coefficients.map(ofc_estimate::from),
+            covariance,
             residual_deviation,
             color_deviations,
             noise_deviation,
+            pixel_noise,
             degenerate_noise_deviation,
             inlier_count: count(inliers),
             subsets,

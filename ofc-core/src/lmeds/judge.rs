@@ -33,7 +33,7 @@ pub(crate) fn judge(
     let refit = reweighted(pixels, &inliers, scale, params.limits_confidence);
     let mut refit = refit.ok_or_else(degenerate)?;
     refit.expect_pull(&robust);
-    refit.color_noise = refit.color_noise.max(noise(pixels, &inliers, &refit.z(), workspace));
+    refit.pixel_noise = refit.pixel_noise.max(noise(pixels, &inliers, &refit.z(), workspace));
     rejection.finish(&refit, count, params, out);
     Ok(())
 }
@@ -69,7 +69,7 @@ impl Rejection {
             residual_deviation: refit.residual_deviation,
             color_deviations: refit.color_deviations,
             noise_deviation: refit.noise_deviation,
-            color_noise: refit.color_noise,
+            pixel_noise: refit.pixel_noise,
             degenerate_noise_deviation: refit.degenerate_noise_deviation,
             usable: count,
             inliers: refit.count as usize,

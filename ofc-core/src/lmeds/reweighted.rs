@@ -63,7 +63,7 @@ pub(crate) struct Refit {
     pub residual_deviation: f64,
     pub noise_deviation: f64,
     /// What rounding makes: the least that the noise of single pixels can be.
-    pub color_noise: f64,
+    pub pixel_noise: f64,
     pub degenerate_noise_deviation: f64,
     pub color_deviations: [f64; 3],
     pub count: u32,
@@ -113,7 +113,7 @@ impl Refit {
             covariance,
             residual_deviation: sqrt(variance),
             noise_deviation: noise,
-            color_noise: rounding,
+            pixel_noise: rounding,
             degenerate_noise_deviation,
             color_deviations,
             count: moments.count,

@@ -163,7 +163,7 @@ impl State {
         fit.residual_deviation = refit.residual_deviation;
         fit.color_deviations = refit.color_deviations;
         fit.noise_deviation = refit.noise_deviation;
-        fit.color_noise *= dispersion;
+        fit.pixel_noise *= dispersion;
         fit.degenerate_noise_deviation = refit.degenerate_noise_deviation;
         fit.usable = self.census.usable;
         fit.inliers = refit.count as usize;

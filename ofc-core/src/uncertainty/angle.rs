@@ -19,6 +19,9 @@ pub fn one_sigma(covariance: &Mat3, n: [f64; 3]) -> f64 {
     let product = squares + 2.0 * products;
     let half = 0.5 * sum;
     let larger = half + sqrt((half * half - product).max(0.0));
+    if larger.is_nan() {
+        return f64::INFINITY;
+    }
     if larger > 0.0 { sqrt(larger) * quantile((sum - larger) / larger) } else { 0.0 }
 }
 
@@ -72,5 +75,6 @@ mod tests {
         // An error along n alone.
         let along = [[0.0, 0.0, 0.0], [0.0, 0.36, 0.48], [0.0, 0.48, 0.64]];
         assert!(one_sigma(&along, n) < 1e-7);
+        assert!(one_sigma(&[[f64::MAX; 3]; 3], n) > 1e100);
     }
 }
