@@ -14,7 +14,7 @@ mod reweighted;
 mod search;
 
 pub(crate) use judge::judge;
-pub(crate) use reweighted::{Refit, least_squares};
+pub(crate) use reweighted::{Refit, covariance, least_squares};
 pub(crate) use search::search;
 
 use crate::ellipsoid::Coefficients;

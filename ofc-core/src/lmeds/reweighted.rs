@@ -1,12 +1,12 @@
 //! Least squares over the inliers, and what it says of itself.
 
-use super::MIN_PIXELS;
+use super::{Fit, MIN_PIXELS};
 use crate::ellipsoid::{Coefficients, quadratic_form};
 use crate::image::{Usable, for_each_bit};
 use crate::inliers::Inliers;
 use crate::mat3::symmetric_eigen;
 use crate::pixels::Pixels;
-use crate::regression::{self, Estimate, LeastSquares, Moments, TERMS, Triangle};
+use crate::regression::{self, Estimate, LeastSquares, Moments, TERMS};
 use libm::{fabsf, sqrt};
 
 /// The scaled z of all usable pixels.
@@ -56,10 +56,23 @@ pub(super) fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
     symmetric_eigen(&moments.second_moments()).values.map(|square| sqrt(square.max(0.0)) / scale)
 }
 
+/// The expected squares and products of the errors of a fit made of these sums of colors times `scale`. Its inliers are those
+/// of another `form`, which pulls it: as much as the two differ may be left of that form's error.
+#[inline(never)]
+pub(crate) fn covariance(moments: &Moments, scale: f64, form: &Coefficients, fit: &mut Fit) {
+    let Some(solved) = moments.solve() else { return };
+    let variance = fit.residual_deviation * fit.residual_deviation;
+    fit.covariance = moments.error_covariance(&solved, variance, fit.noise_deviation * scale, scale * scale);
+    let mut difference = *form;
+    for (entry, estimate) in difference.iter_mut().zip(&fit.coefficients) {
+        *entry -= estimate.value;
+    }
+    regression::add_square(&mut fit.covariance, &difference);
+}
+
 /// Least squares over inliers.
 pub(crate) struct Refit {
     pub coefficients: [Estimate; TERMS],
-    pub covariance: Triangle,
     pub residual_deviation: f64,
     pub noise_deviation: f64,
     /// What rounding makes: the least that the noise of single pixels can be.
@@ -73,15 +86,6 @@ impl Refit {
     /// The coefficients.
     pub fn z(&self) -> Coefficients {
         self.coefficients.map(|estimate| estimate.value)
-    }
-
-    /// Inliers of another form pull what is fitted to them toward it: as much as the two differ may be left.
-    pub fn expect_pull(&mut self, form: &Coefficients) {
-        let mut difference = self.z();
-        for (entry, other) in difference.iter_mut().zip(form) {
-            *entry -= other;
-        }
-        regression::add_square(&mut self.covariance, &difference);
     }
 
     /// From the sums of colors times `scale`, their least squares, and the sum of squares of its residuals. Noise is at least
@@ -99,7 +103,6 @@ impl Refit {
         }
         let variance = residual_sum / (f64::from(moments.count) - TERMS as f64);
         let noise = (moments.noise(&fit.coefficients, residual_sum) / scale).max(rounding);
-        let covariance = moments.error_covariance(fit, variance, noise * scale, scale * scale);
         let degenerate_noise_deviation = moments.degenerate_noise(fit) / scale;
         let color_deviations = deviations(moments, scale);
         let mut coefficients = regression::estimates(fit, variance, moments.count, confidence);
@@ -110,7 +113,6 @@ impl Refit {
         }
         Some(Self {
             coefficients,
-            covariance,
             residual_deviation: sqrt(variance),
             noise_deviation: noise,
             pixel_noise: rounding,
@@ -121,20 +123,20 @@ impl Refit {
     }
 }
 
-/// The least-squares fit to the inliers with its statistics, in pixel values.
+/// The least-squares fit to the inliers, which are these moments, with its statistics, in pixel values.
 #[inline(never)]
 pub(super) fn reweighted(
     pixels: &impl Pixels,
     inliers: &Inliers,
+    moments: &Moments,
     scale: f64,
     confidence: f64,
 ) -> Option<Refit> {
-    let moments = moments(pixels, inliers, scale);
     let fit = moments.solve();
     let fit = fit.as_ref()?;
     let residual_sum = residual_sum(pixels, inliers, &fit.coefficients.map(|c| c * (scale * scale)));
     let rounding = smallest_step(pixels, inliers) * ROUNDING;
-    Refit::new(&moments, fit, scale, confidence, residual_sum, rounding)
+    Refit::new(moments, fit, scale, confidence, residual_sum, rounding)
 }
 
 /// The sum of the squared residuals of the inliers.

@@ -10,7 +10,7 @@ use crate::constrained_slant::{self, Candidates, SlantRoot};
 use crate::ellipsoid::{self, Coefficients};
 use crate::image::{Census, Image, for_each_bit};
 use crate::inliers::{Band, Inliers};
-use crate::lmeds::{MIN_PIXELS, Refit};
+use crate::lmeds::{self, MIN_PIXELS, Refit};
 use crate::mat3::{self, Mat3};
 use crate::regression::Moments;
 use crate::solve::{SMALLEST_NOISE_MARGIN, orient};
@@ -140,13 +140,20 @@ impl State {
     }
 
     /// Takes the fit of the sums over, with the bands that follow from it, and says by how much the dispersion grew.
-    #[inline(never)]
     fn adopt_fit(&mut self) -> Option<f64> {
-        let mut refit = self.refit()?;
+        let form = self.solution.fit.as_ref()?.band.form;
+        let grown = self.adopt_refit()?;
+        lmeds::covariance(&self.moments, self.scale, &form, self.solution.fit.as_mut()?);
+        Some(grown)
+    }
+
+    /// The same but for the covariance.
+    #[inline(never)]
+    fn adopt_refit(&mut self) -> Option<f64> {
+        let refit = self.refit()?;
         let rejection = self.params.solve.lmeds.rejection;
         let fit = self.solution.fit.as_mut()?;
         let z = refit.z();
-        refit.expect_pull(&fit.band.form);
         // An exact fit stays one.
         let dispersion = if fit.residual_deviation > 0.0 {
             refit.residual_deviation / fit.residual_deviation
@@ -159,7 +166,6 @@ impl State {
         fit.r_squared = 1.0 - fit.median_residual * fit.median_residual;
         fit.band = Band::residual(z, fit.dispersion, rejection);
         fit.coefficients = refit.coefficients;
-        fit.covariance = refit.covariance;
         fit.residual_deviation = refit.residual_deviation;
         fit.color_deviations = refit.color_deviations;
         fit.noise_deviation = refit.noise_deviation;
