@@ -53,7 +53,7 @@ cv::Mat overview(const Picture &picture, const Result &result)
     add("the surface relit from (1, 1, 1)", result.solved(), [&] { return shade(result.normals, {1, 1, 1})(part); });
     // Eqs. 25 play no part where F is oriented as a whole.
     if (!result.uncertainty.empty())
-        sheet.add("1 sigma of the normals", uncertainty_picture(result, part));
+        sheet.add("how sure each normal is", uncertainty_picture(result, part));
     else
         add("eqs. 25: solutions lie on the diagonal", result.solution.slant_source != OFC_SLANTS_NONE,
             [&] { return plot_curves(result.solution, sheet.panel); });

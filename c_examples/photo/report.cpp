@@ -152,9 +152,11 @@ double quantile(const cv::Mat &values, double share)
 
 cv::Mat uncertainty_picture(const Result &result, cv::Rect part)
 {
-    const double median = quantile(result.uncertainty, 0.5), most = quantile(result.uncertainty, 0.95);
-    return color_picture(result.uncertainty(part), {0, std::isfinite(most) ? most : 1},
-                         text("1 sigma of the normals, degrees (median %.2f)", median));
+    cv::Vec2d range(quantile(result.uncertainty, 0.01), quantile(result.uncertainty, 0.99));
+    if (!(range[0] <= range[1]))
+        range = {1, 0}; // there are no values
+    return color_picture(result.uncertainty(part), range,
+                         text("1 sigma of the normals, degrees (median %.2f)", quantile(result.uncertainty, 0.5)));
 }
 
 void write_report(const std::string &path, const Result &result)
