@@ -8,13 +8,13 @@
 
 use super::CONSISTENCY;
 use crate::ellipsoid::{Coefficients, matrix, quadratic_form};
-use crate::image::for_each_bit;
 use crate::inliers::Inliers;
 use crate::mat3;
 use crate::pixels::Pixels;
 use crate::select::{kth_smallest, median_rank};
+use core::cell::Cell;
 use core::f64::consts::FRAC_1_SQRT_2;
-use libm::{erf, fabs, sqrt};
+use libm::{fabs, sqrt};
 
 /// Classes of |C rho|^2, four to an octave, from the largest: of what is sixteen octaves smaller nothing is cut off.
 const CLASSES: usize = 64;
@@ -32,32 +32,23 @@ const STEPS: u32 = 24;
 #[inline(never)]
 pub(super) fn noise(pixels: &impl Pixels, inliers: &Inliers, z: &Coefficients, workspace: &mut [f32]) -> f64 {
     let c = matrix(z);
-    let slope = |r, g, b| {
-        let half = mat3::apply(&c, [r, g, b].map(f64::from));
-        4.0 * mat3::dot(half, half)
-    };
+    // No square is above 4 tr C rho^T C rho where C is positive definite.
+    let [c11, c22, c33, ..] = *z;
+    let top = class(4.0 * (c11 + c22 + c33) * inliers.residual.high.max(1.0));
+    let counts = [const { Cell::new(0_u32) }; CLASSES];
     let ratios = pixels.gather(inliers.selector(), workspace, |r, g, b| {
-        fabs(quadratic_form(z, r, g, b) - 1.0) / sqrt(slope(r, g, b).max(f64::MIN_POSITIVE))
+        let half = mat3::apply(&c, [r, g, b].map(f64::from));
+        let slope = 4.0 * mat3::dot(half, half);
+        if let Some(count) = counts.get(top.saturating_sub(class(slope)).min(CLASSES - 1)) {
+            count.set(count.get() + 1);
+        }
+        fabs(quadratic_form(z, r, g, b) - 1.0) / sqrt(slope.max(f64::MIN_POSITIVE))
     });
     let median = kth_smallest(ratios, median_rank(ratios.len())).map_or(0.0, f64::from);
     let limit = 0.5 * (inliers.residual.high - inliers.residual.low);
     if !(median > 0.0 && limit.is_finite()) {
         return CONSISTENCY * median;
     }
-
-    // No square is above 4 tr C rho^T C rho where C is positive definite.
-    let [c11, c22, c33, ..] = *z;
-    let top = class(4.0 * (c11 + c22 + c33) * inliers.residual.high.max(1.0));
-    let mut counts = [0_u32; CLASSES];
-    pixels.for_each_window(|window| {
-        for_each_bit(inliers.bits(window), |i| {
-            let [r, g, b] = window.pixel(i);
-            let place = top.saturating_sub(class(slope(r, g, b))).min(CLASSES - 1);
-            if let Some(count) = counts.get_mut(place) {
-                *count += 1;
-            }
-        });
-    });
     corrected(median, |place| limit / sqrt(middle(top.saturating_sub(place))), &counts)
 }
 
@@ -72,14 +63,13 @@ fn middle(class: usize) -> f64 {
 }
 
 /// The deviation of which half of the values are below `median`, when those of each class are cut off at its `cut`.
-fn corrected(median: f64, cut: impl Fn(usize) -> f64, counts: &[u32; CLASSES]) -> f64 {
-    let half = 0.5 * counts.iter().map(|&count| f64::from(count)).sum::<f64>();
-    let share = |deviation: f64, size: f64| erf(FRAC_1_SQRT_2 * size / deviation);
+fn corrected(median: f64, cut: impl Fn(usize) -> f64, counts: &[Cell<u32>; CLASSES]) -> f64 {
+    let half = 0.5 * counts.iter().map(|count| f64::from(count.get())).sum::<f64>();
     let below = |deviation: f64| {
-        let classes = counts.iter().enumerate().filter(|(_, count)| **count > 0);
-        classes.fold(0.0, |sum, (place, &count)| {
-            let part = share(deviation, median) / share(deviation, cut(place).max(median));
-            sum + f64::from(count) * part
+        let classes = counts.iter().enumerate().filter(|(_, count)| count.get() > 0);
+        classes.fold(0.0, |sum, (place, count)| {
+            let part = share(median / deviation) / share(cut(place).max(median) / deviation);
+            sum + f64::from(count.get()) * part
         })
     };
     let (mut low, mut high) = (CONSISTENCY * median, LARGEST_CORRECTION * CONSISTENCY * median);
@@ -88,4 +78,46 @@ fn corrected(median: f64, cut: impl Fn(usize) -> f64, counts: &[u32; CLASSES]) -
         *(if below(deviation) > half { &mut low } else { &mut high }) = deviation;
     }
     0.5 * (low + high)
+}
+
+/// The share of a normal distribution within so many deviations, good to 0.0005.
+///
+/// # Reference
+/// M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions", 1964, eq. 7.1.27.
+fn share(deviations: f64) -> f64 {
+    let x = FRAC_1_SQRT_2 * deviations;
+    let power = 1.0 + x * (0.278_393 + x * (0.230_389 + x * (0.000_972 + x * 0.078_108)));
+    let square = power * power;
+    1.0 - 1.0 / (square * square)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_those_of_the_normal_distribution() {
+        for (deviations, expected) in
+            [(0.0, 0.0), (0.5, 0.382_925), (1.0, 0.682_689), (2.5, 0.987_581), (6.0, 1.0)]
+        {
+            assert!((share(deviations) - expected).abs() < 6e-4, "{deviations}");
+        }
+    }
+
+    #[test]
+    fn what_is_cut_off_is_made_up_for() {
+        let counts = [const { Cell::new(0) }; CLASSES];
+        counts[3].set(100);
+        // Half of what lies within one deviation lies within 0.4399 deviations, and within 0.6745 of what is not cut off.
+        assert!((corrected(0.4399, |_| 1.0, &counts) - 1.0).abs() < 0.01);
+        assert!((corrected(0.6745, |_| 100.0, &counts) - 1.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn classes_are_quarters_of_octaves() {
+        assert_eq!(class(8.0) - class(1.0), 12);
+        for square in [0.37, 1.0, 5.2, 1e6] {
+            assert!((middle(class(square)) / square - 1.0).abs() < 0.13);
+        }
+    }
 }
