@@ -181,10 +181,13 @@ fn shares_below_one_two_and_three_sigma() {
         root_mean_square(&turns),
         median(&turns)
     );
+    noises.sort_by(f64::total_cmp);
     println!(
-        "noise over truth: median {:.2}; bending over what is said: {:.2}",
+        "noise over truth: {:.2} to {:.2}, median {:.2}; bending over what is said: root mean square {:.2}",
+        noises[0],
+        noises[noises.len() - 1],
         median(&noises),
-        median(&bends)
+        root_mean_square(&bends)
     );
     for (shares, what) in total.iter().zip(["noise alone", "noise and C", "all"]) {
         shares.assert_calibrated(what);
