@@ -8,6 +8,7 @@
 #include "photo/report.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
@@ -46,6 +47,17 @@ Result solve(const Picture &picture, const ofc_solve_params &params)
     result.status = timed("normals", [&] {
         return ofc_normals_compute(&image, &s, result.normals.ptr<float>(), result.normals.step);
     });
+    result.uncertainty.create(picture.size(), CV_32F);
+    const ofc_status known = timed("uncertainty", [&] {
+        return ofc_normals_uncertainty(&image, &s, result.uncertainty.ptr<float>(), result.uncertainty.step);
+    });
+    if (known == OFC_STATUS_OK && ofc_solution_covariance(&s, &result.covariance) == OFC_STATUS_OK) {
+        result.uncertainty *= degrees(1);
+        result.uncertainty.setTo(std::nan(""), result.inliers == 0);
+    } else {
+        // The paper's road does not know how sure it is.
+        result.uncertainty.release();
+    }
 
     // The same stages one by one, to say what each of them costs.
     ofc_color_fit fit;
@@ -169,7 +181,15 @@ int run(const Options &options)
         write_tiff(out / "depth.tiff", result.surface.depth);
         write_image(out / "depth.png", options.depth.picture(result.surface));
         write_mesh(out / "mesh.ply", result.surface, picture.display());
+    }
+    if (!result.uncertainty.empty()) {
+        write_tiff(out / "uncertainty.tiff", result.uncertainty);
+        write_image(out / "uncertainty.png", uncertainty_picture(result, cv::Rect({}, picture.size())));
     } else {
+        for (const char *name : {"uncertainty.tiff", "uncertainty.png"})
+            std::filesystem::remove(out / name);
+    }
+    if (!result.solved()) {
         // What an earlier run left there is not this picture's.
         for (const char *name : {"normals.png", "normals.tiff", "depth.tiff", "depth.png", "mesh.ply"})
             std::filesystem::remove(out / name);

@@ -301,6 +301,9 @@
 // The solution handed in holds no F: the solve that made it did not return OFC_STATUS_OK.
 #define OFC_STATUS_NOT_SOLVED -33
 
+// The solution handed in does not know how sure its orientation is: it was found by tilts alone, on the paper's road.
+#define OFC_STATUS_NO_COVARIANCE -34
+
 // Fewer usable pixels than a fit needs.
 #define OFC_STATUS_TOO_FEW_PIXELS -40
 
@@ -434,12 +437,18 @@ typedef struct ofc_color_fit {
     double r_squared;
     // The reweighted fit: least squares over the inliers.
     struct ofc_estimate coefficients[6];
+    // What squares and products of the errors of these coefficients are expected to be, the upper triangle row by row:
+    // the covariance of least squares, the square of the bias that noise makes, and that of the difference from `robust`.
+    double covariance[21];
     // Standard deviation of the inliers' residuals under the reweighted fit.
     double residual_deviation;
     // Root mean square of the inliers' colors along their principal axes, descending, in pixel values.
     double color_deviations[3];
     // Noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values.
     double noise_deviation;
+    // The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single
+    // pixels.
+    double pixel_noise;
     // Noise in each channel with which colors that do not determine C could look like these. solve refuses where it
     // is below 1.5 times noise_deviation; C is biased by about the inverse square of that ratio.
     double degenerate_noise_deviation;
@@ -1036,6 +1045,21 @@ typedef struct ofc_stream_drift {
     // Zero.
     uint32_t reserved;
 } ofc_stream_drift;
+
+// What squares and products of errors are expected to be; symmetric matrices, row-major. Errors are those of one picture
+// among many: all its pixels share them.
+typedef struct ofc_covariance {
+    // Of c11, c22, c33, c12, c13, c23, (pixel value)^-4.
+    double c[36];
+    // Of the nine entries of F, row-major, (pixel value)^2.
+    double f[81];
+    // Of the nine entries of F^-1, row-major, (pixel value)^-2.
+    double f_inverse[81];
+    // Of the small rotation of all normals, in their frame, for the C that was found; radians squared.
+    double rotation[9];
+    // Standard deviation of the noise in each channel, in pixel values, what rounding adds included.
+    double pixel_noise;
+} ofc_covariance;
 
 
 
@@ -1901,6 +1925,33 @@ ofc_status ofc_stream_normals_row_packed(struct ofc_stream *stream,
 // @param flags   Output: width bytes, 255 for an inlier and 0 elsewhere.
 // @return As ofc_stream_normals_row().
 ofc_status ofc_stream_inliers_row(struct ofc_stream *stream, const struct ofc_image *row, uint8_t *flags);
+
+// The covariances of C and F, to first order.
+//
+// @param solution    What ofc_solve() wrote with OFC_STATUS_OK.
+// @param covariance  Output.
+// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's road, and
+//         streams); OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+ofc_status ofc_solution_covariance(const struct ofc_solution *solution,
+                                   struct ofc_covariance *covariance);
+
+// The 1-sigma angle of each normal that ofc_normals_compute() makes: that below which 68.3 % of errors are expected to lie;
+// 95.4 to 99.0 % lie below twice, 99.7 to 100.0 % below three times the angle. It is made of the noise in the colors (with
+// what rounding adds) and of the errors of C and of the rotation, which all pixels of a picture share: on one picture shares
+// may be far from these, over many they are not. Pixels that do not obey the model and pass for inliers, and the choice
+// between convex and concave, are not in it.
+//
+// @param image     The picture.
+// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
+// @param angle_rad  Output: height rows of width floats, row 0 at the top; above 0 and at most pi, and pi where there is no
+//                  normal. Exact colors make 0.
+// @param angle_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
+// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's road, and
+//         streams), of which nobody knows how sure it is; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+ofc_status ofc_normals_uncertainty(const struct ofc_image *image,
+                                   const struct ofc_solution *solution,
+                                   float *angle_rad,
+                                   size_t angle_stride_bytes);
 
 // The version of the library that is running: major * 10000 + minor * 100 + patch, to be compared with OFC_VERSION.
 uint32_t ofc_version(void);

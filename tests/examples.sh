@@ -31,10 +31,13 @@ json() {
 
 expect 0 ./c_examples/run.sh --out "$out/scene"
 says "median error"
-for file in normals.png normals.tiff inliers.png report.json overview.png depth.tiff depth.png mesh.ply; do
+for file in normals.png normals.tiff inliers.png report.json overview.png depth.tiff depth.png mesh.ply uncertainty.tiff \
+    uncertainty.png; do
     [ -s "$out/scene/$file" ] || fail "no $file"
 done
 json "$out/scene/report.json" 'r["status"] == "success" and r["median_error_deg"] < 10'
+json "$out/scene/report.json" '0.1 < r["uncertainty"]["median_deg"] < 20 and len(r["uncertainty"]["covariance_of_F"]) == 9'
+says "1 sigma"
 json "$out/scene/report.json" 'all(k in r for k in "coefficients C r_squared dispersion inliers norm_location norms cosines tilt_deg slant_deg candidates F ms version".split())'
 json "$out/scene/report.json" 'all(k in c for c in r["coefficients"] for k in ("value", "standard_error", "t", "p"))'
 

@@ -51,8 +51,12 @@ cv::Mat overview(const Picture &picture, const Result &result)
     sheet.add("inliers (white), rejected (orange)", inlier_picture(shown, result)(part));
     add("normals: x right, y up, z out as r, g, b", result.solved(), [&] { return normal_map(result.normals)(part); });
     add("the surface relit from (1, 1, 1)", result.solved(), [&] { return shade(result.normals, {1, 1, 1})(part); });
-    add("eqs. 25: solutions lie on the diagonal", result.solution.slant_source != OFC_SLANTS_NONE,
-        [&] { return plot_curves(result.solution, sheet.panel); });
+    // Eqs. 25 play no part where F is oriented as a whole.
+    if (!result.uncertainty.empty())
+        sheet.add("how sure each normal is", uncertainty_picture(result, part));
+    else
+        add("eqs. 25: solutions lie on the diagonal", result.solution.slant_source != OFC_SLANTS_NONE,
+            [&] { return plot_curves(result.solution, sheet.panel); });
     sheet.add("colors and their ellipsoid", plot_colors(picture, result.solution, result.inliers, sheet.panel));
     const bool integrated = result.surface.integrated() && !result.surface.depth.empty();
     const cv::Mat &depth = result.surface.depth;

@@ -110,6 +110,23 @@ std::string trust(const ofc_solution &s)
     return text("%s: expected to be off by %.1f degrees, %s; %s", level, error, evidence, shape);
 }
 
+template <std::size_t size> json rows(const double (&entries)[size], std::size_t columns)
+{
+    json list = json::array();
+    for (std::size_t i = 0; i < size; i += columns)
+        list.push_back(std::vector<double>(entries + i, entries + i + columns));
+    return list;
+}
+
+json uncertainty(const Result &result)
+{
+    return {{"median_deg", quantile(result.uncertainty, 0.5)},
+            {"p90_deg", quantile(result.uncertainty, 0.9)},
+            {"pixel_noise", result.covariance.pixel_noise},
+            {"covariance_of_coefficients", rows(result.covariance.c, 6)},
+            {"covariance_of_F", rows(result.covariance.f, 9)}};
+}
+
 json confidence(const ofc_solution &s)
 {
     static const char *const names[] = {"tilts alone", "outward normals", "integrability", "both"};
@@ -119,6 +136,28 @@ json confidence(const ofc_solution &s)
 }
 
 } // namespace
+
+double quantile(const cv::Mat &values, double share)
+{
+    std::vector<float> finite;
+    for (const float value : cv::Mat_<float>(values))
+        if (std::isfinite(value))
+            finite.push_back(value);
+    if (finite.empty())
+        return std::nan("");
+    const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(finite.size() - 1));
+    std::nth_element(finite.begin(), middle, finite.end());
+    return *middle;
+}
+
+cv::Mat uncertainty_picture(const Result &result, cv::Rect part)
+{
+    cv::Vec2d range(quantile(result.uncertainty, 0.01), quantile(result.uncertainty, 0.99));
+    if (!(range[0] <= range[1]))
+        range = {1, 0}; // there are no values
+    return color_picture(result.uncertainty(part), range,
+                         text("1 sigma of the normals, degrees (median %.2f)", quantile(result.uncertainty, 0.5)));
+}
 
 void write_report(const std::string &path, const Result &result)
 {
@@ -167,6 +206,8 @@ void write_report(const std::string &path, const Result &result)
         report["check"] = check_report(*result.check);
     if (result.solved())
         report["depth"] = result.depth.report(result.surface);
+    if (!result.uncertainty.empty())
+        report["uncertainty"] = uncertainty(result);
     if (result.median_error_deg)
         report["median_error_deg"] = *result.median_error_deg;
     if (result.true_f) {
@@ -207,6 +248,10 @@ std::vector<Line> summary(const Result &result)
         }
         lines.push_back({channel_names[c], line});
     }
+    if (!result.uncertainty.empty())
+        lines.push_back({"1 sigma", text("%.2f degrees at half of the normals, %.2f at nine tenths; noise %.2f",
+                                         quantile(result.uncertainty, 0.5), quantile(result.uncertainty, 0.9),
+                                         result.covariance.pixel_noise)});
     if (result.median_error_deg)
         lines.push_back({"normals", text("median error %.2f degrees", *result.median_error_deg)});
     if (const ofc_depth_result &d = result.surface.result; result.surface.integrated()) {

@@ -17,6 +17,8 @@ struct Result {
     ofc_solution solution = {}; // zero where the status is negative
     cv::Mat inliers;            // CV_8U, 255 for an inlier
     cv::Mat normals;            // CV_32FC3 x, y, z; zero where there is none
+    cv::Mat uncertainty;        // CV_32F, 1-sigma angle in degrees, NaN where there is no normal; empty where it is not known
+    ofc_covariance covariance = {}; // where the uncertainty is known
     DepthOptions depth;         // what was wanted of it
     Surface surface;            // empty where there are no normals
     std::optional<ofc_check_result> check; // where there are normals
@@ -29,6 +31,13 @@ struct Result {
 
     bool solved() const { return status == OFC_STATUS_OK; }
 };
+
+// The value that this share of the finite ones is below; NaN where there are none.
+double quantile(const cv::Mat &values, double share);
+
+// A part of the uncertainty in colors, beside a bar in degrees. The first and last hundredth of the values share
+// the first and last color.
+cv::Mat uncertainty_picture(const Result &result, cv::Rect part);
 
 void write_report(const std::string &path, const Result &result);
 

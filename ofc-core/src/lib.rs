@@ -40,3 +40,4 @@ pub mod solve;
 pub mod stream;
 pub mod student_t;
 pub mod tilt;
+pub mod uncertainty;

@@ -9,17 +9,18 @@
 //! P. J. Rousseeuw, K. Van Driessen, "Computing LTS regression for large data sets", 2006 (concentration steps).
 
 mod judge;
+mod noise;
 mod reweighted;
 mod search;
 
 pub(crate) use judge::judge;
-pub(crate) use reweighted::{Refit, least_squares};
+pub(crate) use reweighted::{Refit, covariance, least_squares};
 pub(crate) use search::search;
 
 use crate::ellipsoid::Coefficients;
 use crate::image::{Census, Image, Usable};
 use crate::inliers::Band;
-use crate::regression::{Estimate, TERMS};
+use crate::regression::{Estimate, TERMS, Triangle};
 use crate::rng::Rng;
 use libm::{ceil, log, log1p};
 use search::Sample;
@@ -154,6 +155,10 @@ pub struct Fit {
     pub band: Band,
     /// The reweighted fit: least squares over the inliers.
     pub coefficients: [Estimate; TERMS],
+    /// What squares and products of the errors of these coefficients are expected to be: the covariance of least squares,
+    /// the square of the bias that noise makes, and that of the difference from `robust`, toward which its inliers pull the fit;
+    /// on large pictures the first is the smallest. The upper triangle, row by row.
+    pub covariance: Triangle,
     /// The standard deviation of the inliers' residuals under the reweighted fit.
     pub residual_deviation: f64,
     /// The singular values of the inliers' colors, root mean square, descending, in pixel values.
@@ -161,6 +166,8 @@ pub struct Fit {
     /// The noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values; at least
     /// what rounding to the picture's steps makes.
     pub noise_deviation: f64,
+    /// The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single pixels.
+    pub pixel_noise: f64,
     /// The noise in each channel with which colors that do not determine C could look like these. The coefficients are
     /// biased by about (`noise_deviation` / `degenerate_noise_deviation`)^2, whatever their standard errors say.
     pub degenerate_noise_deviation: f64,

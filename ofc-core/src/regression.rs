@@ -7,6 +7,10 @@
 //! Eqs. 10-11; the statistics are the textbook's: P. J. Rousseeuw, A. M. Leroy, "Robust Regression and Outlier
 //! Detection", Wiley 1987, chapter 2.
 
+mod errors;
+
+pub use errors::{Triangle, add_square, whole};
+
 use crate::ellipsoid::Coefficients;
 use crate::mat6::{self, Mat6};
 use crate::student_t;

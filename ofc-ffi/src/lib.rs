@@ -21,6 +21,7 @@ mod solve;
 mod status;
 mod stream;
 mod types;
+mod uncertainty;
 mod version;
 
 pub use check::*;
@@ -39,6 +40,7 @@ pub use solve::*;
 pub use status::*;
 pub use stream::*;
 pub use types::*;
+pub use uncertainty::*;
 pub use version::*;
 
 #[cfg(all(feature = "panic-handler", not(feature = "std")))]

@@ -278,7 +278,6 @@ impl From<&Solution> for ofc_solution {
             joint,
             choice,
         } = solution;
-        let unfitted = ofc_color_fit { color_deviations: *color_deviations, ..ofc_color_fit::default() };
         let mut result = Self {
             outcome: of_outcome(*outcome),
             slant_source: OFC_SLANTS_NONE,
@@ -287,7 +286,7 @@ impl From<&Solution> for ofc_solution {
             inlier_count: count(*inlier_count),
             reserved: 0,
             census: (*census).into(),
-            fit: fit.map_or(unfitted, ofc_color_fit::from),
+            fit: ofc_color_fit { color_deviations: *color_deviations, ..ofc_color_fit::default() },
             rank: rank.map_or(ofc_rank::default(), ofc_rank::from),
             norm_location: norm_location.map_or(ofc_location::default(), ofc_location::from),
             inliers: (*inliers).into(),
@@ -298,6 +297,9 @@ impl From<&Solution> for ofc_solution {
             candidates: [ofc_slants::default(); OFC_MAX_CANDIDATES],
             orientation: ofc_orientation::default(),
         };
+        if let Some(fit) = fit {
+            result.fit = fit.into();
+        }
         if let Some(choice) = choice {
             result.slant_rad = choice.slants;
             result.candidate_count = count(choice.candidates.len());

@@ -52,6 +52,8 @@ pub const OFC_STATUS_INVALID_PARAMETER: i32 = -31;
 pub const OFC_STATUS_RESERVED_NOT_ZERO: i32 = -32;
 /// The solution handed in holds no F: the solve that made it did not return OFC_STATUS_OK.
 pub const OFC_STATUS_NOT_SOLVED: i32 = -33;
+/// The solution handed in does not know how sure its orientation is: it was found by tilts alone, on the paper's road.
+pub const OFC_STATUS_NO_COVARIANCE: i32 = -34;
 
 /// Fewer usable pixels than a fit needs.
 pub const OFC_STATUS_TOO_FEW_PIXELS: i32 = -40;
@@ -95,6 +97,7 @@ fn message(status: ofc_status) -> &'static CStr {
         OFC_STATUS_INVALID_PARAMETER => c"a parameter is out of its range",
         OFC_STATUS_RESERVED_NOT_ZERO => c"a reserved field is not zero",
         OFC_STATUS_NOT_SOLVED => c"the solution holds no F",
+        OFC_STATUS_NO_COVARIANCE => c"the solution does not know how sure its orientation is: it was found by tilts alone",
         OFC_STATUS_TOO_FEW_PIXELS => c"too few usable pixels",
         OFC_STATUS_DARK => c"too few usable pixels: most are black",
         OFC_STATUS_SATURATED => c"too few usable pixels: most are saturated",

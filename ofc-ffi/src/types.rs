@@ -324,12 +324,18 @@ pub struct ofc_color_fit {
     pub r_squared: f64,
     /// The reweighted fit: least squares over the inliers.
     pub coefficients: [ofc_estimate; 6],
+    /// What squares and products of the errors of these coefficients are expected to be, the upper triangle row by row:
+    /// the covariance of least squares, the square of the bias that noise makes, and that of the difference from `robust`.
+    pub covariance: [f64; 21],
     /// Standard deviation of the inliers' residuals under the reweighted fit.
     pub residual_deviation: f64,
     /// Root mean square of the inliers' colors along their principal axes, descending, in pixel values.
     pub color_deviations: [f64; 3],
     /// Noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values.
     pub noise_deviation: f64,
+    /// The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single
+    /// pixels.
+    pub pixel_noise: f64,
     /// Noise in each channel with which colors that do not determine C could look like these. solve refuses where it
     /// is below 1.5 times noise_deviation; C is biased by about the inverse square of that ratio.
     pub degenerate_noise_deviation: f64,
@@ -339,8 +345,9 @@ pub struct ofc_color_fit {
     pub subsets: u32,
 }
 
-impl From<Fit> for ofc_color_fit {
-    fn from(fit: Fit) -> Self {
+impl From<&Fit> for ofc_color_fit {
+    #[inline]
+    fn from(fit: &Fit) -> Self {
         let Fit {
             robust,
             median_residual,
@@ -348,23 +355,27 @@ impl From<Fit> for ofc_color_fit {
             r_squared,
             band: _,
             coefficients,
+            covariance,
             residual_deviation,
             color_deviations,
             noise_deviation,
+            pixel_noise,
             degenerate_noise_deviation,
             usable: _,
             inliers,
             subsets,
-        } = fit;
+        } = *fit;
         Self {
             robust,
             median_residual,
             dispersion,
             r_squared,
             coefficients: coefficients.map(ofc_estimate::from),
+            covariance,
             residual_deviation,
             color_deviations,
             noise_deviation,
+            pixel_noise,
             degenerate_noise_deviation,
             inlier_count: count(inliers),
             subsets,

@@ -22,6 +22,7 @@ void mix_words(const uint32_t *values, int count);
 void mix_census(const ofc_census *census);
 void mix_color_fit(const ofc_color_fit *fit);
 void mix_rank(const ofc_rank *rank);
+void mix_covariance(const ofc_covariance *covariance);
 void mix_location(const ofc_location *location);
 void mix_inliers(const ofc_inliers *inliers);
 void mix_ellipsoid(const ofc_ellipsoid *ellipsoid);

@@ -32,12 +32,23 @@ void mix_color_fit(const ofc_color_fit *fit)
         NUMBER(estimate->low);
         NUMBER(estimate->high);
     }
+    ARRAY(fit->covariance);
     NUMBER(fit->residual_deviation);
     ARRAY(fit->color_deviations);
     NUMBER(fit->noise_deviation);
+    NUMBER(fit->pixel_noise);
     NUMBER(fit->degenerate_noise_deviation);
     INTEGER(fit->inlier_count);
     INTEGER(fit->subsets);
+}
+
+void mix_covariance(const ofc_covariance *covariance)
+{
+    ARRAY(covariance->c);
+    ARRAY(covariance->f);
+    ARRAY(covariance->f_inverse);
+    ARRAY(covariance->rotation);
+    NUMBER(covariance->pixel_noise);
 }
 
 void mix_rank(const ofc_rank *rank)

@@ -9,6 +9,7 @@ uint64_t workspace[OFC_SIZE_OF_LARGER(OFC_SEGMENT_WORKSPACE_SIZE(WIDTH, HEIGHT),
                    sizeof(uint64_t) + 1];
 const size_t workspace_bytes = sizeof workspace;
 float normals[PIXELS * 3];
+float angles[PIXELS];
 uint8_t marks[PIXELS];
 
 static void print(const char *scene, const char *group)

@@ -33,6 +33,7 @@ void mix_segments(const ofc_image *image, const struct fitted *fitted);
 extern uint64_t workspace[];
 extern const size_t workspace_bytes;
 extern float normals[];
+extern float angles[];
 extern uint8_t marks[];
 
 #endif

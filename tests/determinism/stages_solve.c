@@ -46,6 +46,12 @@ static void solve(const ofc_image *image, const ofc_solve_params *params)
         return;
     mix_status(ofc_normals_compute(image, &solution, normals, WIDTH * 3 * sizeof(float)));
     mix_floats(normals, image->height * image->width * 3);
+    ofc_covariance covariance = {0};
+    mix_status(ofc_solution_covariance(&solution, &covariance));
+    mix_covariance(&covariance);
+    const ofc_status known = ofc_normals_uncertainty(image, &solution, angles, WIDTH * sizeof(float));
+    mix_status(known);
+    mix_floats(angles, known == OFC_STATUS_OK ? image->height * image->width : 0);
     mix_status(ofc_check(image, &solution, NULL, workspace, workspace_bytes, &result));
     mix_check(&result);
     const ofc_depth_map surface = mix_depth(image);

@@ -6,6 +6,7 @@ pub mod call_graph;
 pub mod depth_maps;
 pub mod depth_oracle;
 pub mod linear;
+pub mod lit_reliefs;
 pub mod lmeds_oracle;
 pub mod photographs;
 pub mod scene;

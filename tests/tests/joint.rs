@@ -6,13 +6,10 @@ use ofc_core::inliers::Inliers;
 use ofc_core::joint::{self, Evidence};
 use ofc_core::lmeds;
 use ofc_core::normals::{Length, normal};
-use ofc_core::render::{self, Canvas, Lights, Outputs, Rows, render};
-use ofc_core::rng::Rng;
 use ofc_core::solve::{Outcome, Params, Road, SlantSource, Solution, solve, workspace_len};
-use ofc_tests::depth_maps::{
-    self, Relief, TABLE_1_COLORS, direction, egg, peaks, sphere, table_1_directions, terrain, vase,
-};
+use ofc_tests::depth_maps::{egg, sphere};
 use ofc_tests::linear::{Matrix, apply, degrees_between, dot, median, nearest_orthogonal, unit};
+use ofc_tests::lit_reliefs::{lights, reliefs, rendered};
 use ofc_tests::photographs::{self, read_png};
 
 /// Random light triples beside Table 1's: `OFC_LIGHTS=10` is the whole table.
@@ -77,49 +74,9 @@ fn errors(image: &Image, solution: &Solution, truth: &[[f32; 3]]) -> Errors {
     Errors { ours, oracle: of(&|&(n, ..)| apply(turn, n)), right_twin: ours <= twin }
 }
 
-fn rendered(relief: &Relief, a: &[f64; 9], b: &[f64; 9], noise: f64, seed: u64) -> (Vec<u8>, Vec<[f32; 3]>) {
-    let (width, height) = (relief.width, relief.height);
-    let bytes = relief.bytes();
-    let mut pixels = vec![0; width * height * 3];
-    let mut normals = vec![0.0; width * height * 3];
-    let params = render::Params { noise, seed, ..render::Params::default() };
-    let picture = Canvas::new(&mut pixels, width, height, width * 3, Sample::U8, Order::Rgb).expect("room");
-    let rows = Rows { values: &mut normals, row_stride: width * 3 };
-    let outputs = Outputs { picture, seen: None, normals: Some(rows) };
-    render(&relief.view(&bytes), &Lights::new(a, b).expect("lights"), &params, outputs).expect("a picture");
-    (pixels, normals.as_chunks().0.to_vec())
-}
-
-/// Table 1's lights, or three of slants 20 to 60 degrees, roughly a third of a turn apart.
-fn lights(number: u64) -> ([f64; 9], [f64; 9]) {
-    if number == 0 {
-        return (table_1_directions(), TABLE_1_COLORS);
-    }
-    let mut rng = Rng::new(1000 + number);
-    let mut uniform = || f64::from(rng.below(1_000_000)) / 1e6;
-    let (mut a, mut b) = ([0.0; 9], [0.0; 9]);
-    let first = 360.0 * uniform();
-    for (light, row) in a.as_chunks_mut::<3>().0.iter_mut().enumerate() {
-        let tilt = first + 120.0 * light as f64 + 60.0 * (uniform() - 0.5);
-        *row = direction([20.0 + 40.0 * uniform(), tilt]);
-    }
-    for (i, entry) in b.iter_mut().enumerate() {
-        *entry = if i % 4 == 0 { 60.0 + 40.0 * uniform() } else { 10.0 + 35.0 * uniform() };
-    }
-    (a, b)
-}
-
 #[test]
 fn rendered_scenes() {
-    let scenes: [(&str, bool, Relief); 7] = [
-        ("sphere", true, sphere(256, 256, 0.9, 80.0)),
-        ("egg", true, egg(256, 256)),
-        ("bump", true, depth_maps::bump(256, 256)),
-        ("peaks", false, peaks(256, 256)),
-        ("vase", true, vase(256, 256)),
-        ("bust", true, depth_maps::bust(256, 256)),
-        ("terrain", false, terrain(256, 256)),
-    ];
+    let scenes = reliefs();
     println!("scene    lights noise   ours  oracle  paper  expected  dome  evidence");
     let (mut near, mut within_two, mut told, mut all, mut paper_near) = (0, 0, 0, 0, 0);
     let (mut convex, mut right) = (0, 0);

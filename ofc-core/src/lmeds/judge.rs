@@ -1,12 +1,13 @@
 //! From the z that was found to the fit: the objective over all pixels, and the rejection that follows from it.
 
-use super::reweighted::{Refit, deviations, moments, reweighted};
+use super::noise::noise;
+use super::reweighted::{Refit, covariance, deviations, moments, reweighted};
 use super::{CONSISTENCY, Fit, FitError, Method, Params};
 use crate::ellipsoid::{Coefficients, quadratic_form};
 use crate::image::Usable;
 use crate::inliers::{Band, Inliers};
 use crate::pixels::Pixels;
-use crate::regression::TERMS;
+use crate::regression::{Moments, TERMS};
 use crate::select::{kth_smallest, median_rank};
 use libm::fabs;
 
@@ -29,8 +30,12 @@ pub(crate) fn judge(
     let rejection =
         Rejection::new(robust, count, median_residual(pixels, usable, &robust, workspace), params);
     let inliers = Inliers { residual: rejection.band, ..Inliers::all(usable) };
-    let refit = reweighted(pixels, &inliers, scale, params.limits_confidence);
-    rejection.finish(refit.as_ref().ok_or_else(degenerate)?, count, params, out);
+    let moments = moments(pixels, &inliers, scale);
+    rejection.refit(pixels, &inliers, &moments, scale, count, params, out).ok_or_else(degenerate)?;
+    if let Some(fit) = out {
+        covariance(&moments, scale, &robust, fit);
+        fit.pixel_noise = fit.pixel_noise.max(noise(pixels, &inliers, &fit.z(), workspace));
+    }
     Ok(())
 }
 
@@ -51,6 +56,24 @@ impl Rejection {
         Self { median_residual, dispersion, band }
     }
 
+    /// The fit to the inliers, but for its covariance; `None` where they determine none.
+    #[inline(never)]
+    #[expect(clippy::too_many_arguments, reason = "as above")]
+    fn refit(
+        &self,
+        pixels: &impl Pixels,
+        inliers: &Inliers,
+        moments: &Moments,
+        scale: f64,
+        count: usize,
+        params: &Params,
+        out: &mut Option<Fit>,
+    ) -> Option<()> {
+        let refit = reweighted(pixels, inliers, moments, scale, params.limits_confidence);
+        self.finish(refit.as_ref()?, count, params, out);
+        Some(())
+    }
+
     /// The whole fit, where it is wanted.
     #[inline(never)]
     fn finish(&self, refit: &Refit, count: usize, params: &Params, out: &mut Option<Fit>) {
@@ -61,9 +84,11 @@ impl Rejection {
             r_squared: 1.0 - self.median_residual * self.median_residual,
             band: self.band,
             coefficients: refit.coefficients,
+            covariance: [0.0; 21],
             residual_deviation: refit.residual_deviation,
             color_deviations: refit.color_deviations,
             noise_deviation: refit.noise_deviation,
+            pixel_noise: refit.pixel_noise,
             degenerate_noise_deviation: refit.degenerate_noise_deviation,
             usable: count,
             inliers: refit.count as usize,

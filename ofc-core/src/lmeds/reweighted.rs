@@ -1,6 +1,6 @@
 //! Least squares over the inliers, and what it says of itself.
 
-use super::MIN_PIXELS;
+use super::{Fit, MIN_PIXELS};
 use crate::ellipsoid::{Coefficients, quadratic_form};
 use crate::image::{Usable, for_each_bit};
 use crate::inliers::Inliers;
@@ -56,11 +56,27 @@ pub(super) fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
     symmetric_eigen(&moments.second_moments()).values.map(|square| sqrt(square.max(0.0)) / scale)
 }
 
+/// The expected squares and products of the errors of a fit made of these sums of colors times `scale`. Its inliers are those
+/// of another `form`, which pulls it: as much as the two differ may be left of that form's error.
+#[inline(never)]
+pub(crate) fn covariance(moments: &Moments, scale: f64, form: &Coefficients, fit: &mut Fit) {
+    let Some(solved) = moments.solve() else { return };
+    let variance = fit.residual_deviation * fit.residual_deviation;
+    fit.covariance = moments.error_covariance(&solved, variance, fit.noise_deviation * scale, scale * scale);
+    let mut difference = *form;
+    for (entry, estimate) in difference.iter_mut().zip(&fit.coefficients) {
+        *entry -= estimate.value;
+    }
+    regression::add_square(&mut fit.covariance, &difference);
+}
+
 /// Least squares over inliers.
 pub(crate) struct Refit {
     pub coefficients: [Estimate; TERMS],
     pub residual_deviation: f64,
     pub noise_deviation: f64,
+    /// What rounding makes: the least that the noise of single pixels can be.
+    pub pixel_noise: f64,
     pub degenerate_noise_deviation: f64,
     pub color_deviations: [f64; 3],
     pub count: u32,
@@ -86,7 +102,7 @@ impl Refit {
             return None;
         }
         let variance = residual_sum / (f64::from(moments.count) - TERMS as f64);
-        let noise = moments.noise(&fit.coefficients, residual_sum) / scale;
+        let noise = (moments.noise(&fit.coefficients, residual_sum) / scale).max(rounding);
         let degenerate_noise_deviation = moments.degenerate_noise(fit) / scale;
         let color_deviations = deviations(moments, scale);
         let mut coefficients = regression::estimates(fit, variance, moments.count, confidence);
@@ -98,7 +114,8 @@ impl Refit {
         Some(Self {
             coefficients,
             residual_deviation: sqrt(variance),
-            noise_deviation: noise.max(rounding),
+            noise_deviation: noise,
+            pixel_noise: rounding,
             degenerate_noise_deviation,
             color_deviations,
             count: moments.count,
@@ -106,20 +123,20 @@ impl Refit {
     }
 }
 
-/// The least-squares fit to the inliers with its statistics, in pixel values.
+/// The least-squares fit to the inliers, which are these moments, with its statistics, in pixel values.
 #[inline(never)]
 pub(super) fn reweighted(
     pixels: &impl Pixels,
     inliers: &Inliers,
+    moments: &Moments,
     scale: f64,
     confidence: f64,
 ) -> Option<Refit> {
-    let moments = moments(pixels, inliers, scale);
     let fit = moments.solve();
     let fit = fit.as_ref()?;
     let residual_sum = residual_sum(pixels, inliers, &fit.coefficients.map(|c| c * (scale * scale)));
     let rounding = smallest_step(pixels, inliers) * ROUNDING;
-    Refit::new(&moments, fit, scale, confidence, residual_sum, rounding)
+    Refit::new(moments, fit, scale, confidence, residual_sum, rounding)
 }
 
 /// The sum of the squared residuals of the inliers.

@@ -1,0 +1,138 @@
+//! How sure C, F and the normals are.
+
+use crate::image::{image, ofc_image};
+use crate::pointers::{Out, Plain, disjoint, extent, input, output_slice};
+use crate::solve::{OFC_EVIDENCE_TILTS_ALONE, ofc_solution};
+use crate::status::{
+    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_NO_COVARIANCE, OFC_STATUS_NOT_SOLVED,
+    OFC_STATUS_OK, of, of_image_error, ofc_status,
+};
+use crate::types::{finite_matrix, flat};
+use ofc_core::image::span;
+use ofc_core::regression::whole;
+use ofc_core::uncertainty::{Sources, Uncertainty, of_f, of_f_inverse, of_turn};
+
+/// What squares and products of errors are expected to be; symmetric matrices, row-major. Errors are those of one picture
+/// among many: all its pixels share them.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ofc_covariance {
+    /// Of c11, c22, c33, c12, c13, c23, (pixel value)^-4.
+    pub c: [f64; 36],
+    /// Of the nine entries of F, row-major, (pixel value)^2.
+    pub f: [f64; 81],
+    /// Of the nine entries of F^-1, row-major, (pixel value)^-2.
+    pub f_inverse: [f64; 81],
+    /// Of the small rotation of all normals, in their frame, for the C that was found; radians squared.
+    pub rotation: [f64; 9],
+    /// Standard deviation of the noise in each channel, in pixel values, what rounding adds included.
+    pub pixel_noise: f64,
+}
+
+// SAFETY: floats.
+unsafe impl Plain for ofc_covariance {}
+
+/// What the uncertainty of a solution comes from, if it is there and finite.
+fn sources(solution: &ofc_solution) -> Result<Sources, ofc_status> {
+    if solution.outcome != OFC_STATUS_OK || solution.orientation.rank != 3 {
+        return Err(OFC_STATUS_NOT_SOLVED);
+    }
+    if solution.confidence.evidence == OFC_EVIDENCE_TILTS_ALONE {
+        return Err(OFC_STATUS_NO_COVARIANCE);
+    }
+    let (c, noise) = (solution.fit.covariance, solution.fit.pixel_noise);
+    if !(c.iter().all(|entry| entry.is_finite()) && noise >= 0.0 && noise.is_finite()) {
+        return Err(OFC_STATUS_INVALID_PARAMETER);
+    }
+    Ok(Sources {
+        f: finite_matrix(solution.orientation.f)?,
+        f_inverse: finite_matrix(solution.orientation.f_inverse)?,
+        c,
+        rotation: finite_matrix(solution.confidence.covariance)?,
+        noise,
+    })
+}
+
+/// The covariances of C and F, to first order.
+///
+/// @param solution    What ofc_solve() wrote with OFC_STATUS_OK.
+/// @param covariance  Output.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's road, and
+///         streams); OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_solution_covariance(
+    solution: *const ofc_solution,
+    covariance: *mut ofc_covariance,
+) -> ofc_status {
+    let body = || {
+        let (solution, solution_extent) = input(solution)?;
+        let out = Out::new(covariance)?;
+        disjoint(&[out.extent], &[solution_extent])?;
+        let Sources { f, f_inverse, c, rotation, noise } = sources(&solution)?;
+        let turn = of_turn(&f, &c, &rotation);
+        out.write(ofc_covariance {
+            c: row_major(&whole(&c)),
+            f: row_major(&of_f(&f, &turn)),
+            f_inverse: row_major(&of_f_inverse(&f_inverse, &turn)),
+            rotation: flat(&rotation),
+            pixel_noise: noise,
+        });
+        Ok(OFC_STATUS_OK)
+    };
+    of(body())
+}
+
+/// The entries row by row.
+fn row_major<const N: usize, const SQUARE: usize>(matrix: &[[f64; N]; N]) -> [f64; SQUARE] {
+    let mut entries = [0.0; SQUARE];
+    for (entry, value) in entries.iter_mut().zip(matrix.iter().flatten()) {
+        *entry = *value;
+    }
+    entries
+}
+
+/// The 1-sigma angle of each normal that ofc_normals_compute() makes: that below which 68.3 % of errors are expected to lie;
+/// 95.4 to 99.0 % lie below twice, 99.7 to 100.0 % below three times the angle. It is made of the noise in the colors (with
+/// what rounding adds) and of the errors of C and of the rotation, which all pixels of a picture share: on one picture shares
+/// may be far from these, over many they are not. Pixels that do not obey the model and pass for inliers, and the choice
+/// between convex and concave, are not in it.
+///
+/// @param image     The picture.
+/// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
+/// @param angle_rad  Output: height rows of width floats, row 0 at the top; above 0 and at most pi, and pi where there is no
+///                  normal. Exact colors make 0.
+/// @param angle_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's road, and
+///         streams), of which nobody knows how sure it is; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_normals_uncertainty(
+    image: *const ofc_image,
+    solution: *const ofc_solution,
+    angle_rad: *mut f32,
+    angle_stride_bytes: usize,
+) -> ofc_status {
+    let body = || {
+        // SAFETY: the contract of this function.
+        let picture = unsafe { self::image(image) }?;
+        let (solution, solution_extent) = input(solution)?;
+        let [a, b, c, d, e] = picture.extents;
+        let sources = sources(&solution)?;
+        let view = &picture.view;
+        let bytes = span(view.width(), view.height(), size_of::<f32>(), angle_stride_bytes)
+            .map_err(of_image_error)?;
+        if !angle_stride_bytes.is_multiple_of(size_of::<f32>()) {
+            return Err(OFC_STATUS_MISALIGNED);
+        }
+        let floats = bytes / size_of::<f32>();
+        disjoint(&[extent(angle_rad.cast_const(), floats)?], &[a, b, c, d, e, solution_extent])?;
+        // SAFETY: checked and disjoint.
+        let out = unsafe { output_slice(angle_rad, floats) };
+        let stride = angle_stride_bytes / size_of::<f32>();
+        let inliers = solution.inliers.into_core();
+        match Uncertainty::new(&sources).compute(view, inliers.selector(), out, stride) {
+            Ok(()) => Ok(OFC_STATUS_OK),
+            Err(_) => Err(OFC_STATUS_INVALID_PARAMETER),
+        }
+    };
+    of(body())
+}
