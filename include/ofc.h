@@ -404,8 +404,12 @@ typedef struct ofc_census {
     int32_t saturated;
     // NaN or infinite in a channel.
     int32_t non_finite;
+    // In the shadow of one of the lights.
+    int32_t shaded;
     // Largest absolute channel value of the usable pixels.
     float largest;
+    // Zero.
+    uint32_t reserved;
 } ofc_census;
 
 // A regression coefficient with what the regression knows of it.
@@ -501,6 +505,11 @@ typedef struct ofc_inliers {
     double norm_low;
     // Largest accepted rho^T C rho.
     double norm_high;
+    // Unit normals of up to three faces of the cone of colors, a row each; zero where there is none. Colors near a face, or
+    // beyond it, are in the shadow of one light.
+    double shadow_normal[9];
+    // The smallest accepted normal . rho of each.
+    double shadow_least[3];
 } ofc_inliers;
 
 // What C says of the color-orientation matrix F before its orthogonal transformation is known (eq. 18). Matrices are
@@ -1010,8 +1019,10 @@ typedef struct ofc_solve_params {
     // How F is oriented, one of OFC_ROAD_*. Given tilts, and a picture that is too small for OFC_ROAD_JOINT, take the paper's
     // road whatever this is; tilt_estimator and slant_fallback are for that road. Default OFC_ROAD_JOINT.
     ofc_road road;
+    // 0 leaves out colors that one of the lights does not reach, where such are found; 1 keeps them. Default 0.
+    int32_t keep_shadows;
     // Must be zero.
-    uint32_t reserved[5];
+    uint32_t reserved[4];
 } ofc_solve_params;
 
 // What a stream does. Set by ofc_stream_params_default().
