@@ -1,5 +1,6 @@
 //! The three passes of a cold start.
 
+use super::rows::Rows;
 use super::strata::{Sampled, Slots, Strata};
 use super::{Memory, Pass, State, StreamError, room};
 use crate::cells::{Block, for_each_block_of_rows};
@@ -49,6 +50,7 @@ impl State {
         self.concluded = false;
         lmeds::enough(&self.census, self.width * self.height).map_err(StreamError::Fit)?;
         self.scale = lmeds::reciprocal_power_of_two(self.census.largest);
+        self.rows = Rows::new(self.height, &self.census, self.params.refine_pixels);
         self.drift = None;
         let found = self.search(memory);
         let fit = self.fit(found, memory);
@@ -136,7 +138,7 @@ impl State {
     }
 
     /// The pairs along the last row, which has none below.
-    pub(super) fn last_row_tilts(&mut self, memory: &Memory) {
+    fn last_row_tilts(&mut self, memory: &Memory) {
         self.tilts_of_blocks(None, memory);
     }
 
@@ -150,7 +152,7 @@ impl State {
     }
 
     /// The tilts that the differences, or the caller, have.
-    pub(super) fn tilts(&self) -> Option<Tilts> {
+    fn tilts(&self) -> Option<Tilts> {
         match self.params.solve.tilts {
             TiltEstimator::Given(tilts) => Some(Tilts::alone(tilts)),
             _ => self.differences.tilts(),
@@ -274,18 +276,21 @@ fn multiply(colors: &mut [&mut [f32]; 3], factor: f64) {
 #[inline(never)]
 fn keep(row: &Image, memory: &mut Memory) {
     let width = row.width();
-    row.for_each_window(|window| {
-        for (channel, color) in window.color.iter().enumerate() {
-            let out = memory.values.get_mut(channel * width + window.x..).unwrap_or_default();
-            for (i, (out, &value)) in out.iter_mut().zip(color).take(window.len).enumerate() {
-                *out = if window.masked >> i & 1 == 1 { value } else { f32::NAN };
-            }
+    row.for_each_window(|window| keep_window(width, window, window.masked, memory));
+}
+
+/// The same of one window: NaN for all but `bits`.
+pub(super) fn keep_window(width: usize, window: &Window, bits: u64, memory: &mut Memory) {
+    for (channel, color) in window.color.iter().enumerate() {
+        let out = memory.values.get_mut(channel * width + window.x..).unwrap_or_default();
+        for (i, (out, &value)) in out.iter_mut().zip(color).take(window.len).enumerate() {
+            *out = if bits >> i & 1 == 1 { value } else { f32::NAN };
         }
-    });
+    }
 }
 
 /// The pixels that are kept of the row before, from column `x` on.
-fn kept(x: usize, width: usize, memory: &Memory, window: &mut Window) {
+pub(super) fn kept(x: usize, width: usize, memory: &Memory, window: &mut Window) {
     window.x = x;
     window.len = width.saturating_sub(x).min(WINDOW);
     window.masked = if window.len == WINDOW { u64::MAX } else { (1 << window.len) - 1 };

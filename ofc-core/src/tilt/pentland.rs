@@ -60,6 +60,26 @@ impl Sums {
         self.add_of(block, |window, i| window.pixel(i).map(f64::from));
     }
 
+    /// Adds the pairs of inliers along the `lower` of two rows, and those between it and the `upper` one. `left` is the
+    /// pixel left of the window where it is an inlier, and then the window's last one.
+    pub fn add_rows(
+        &mut self,
+        (upper, upper_bits): (&Window, u64),
+        (lower, lower_bits): (&Window, u64),
+        left: &mut Option<[f32; 3]>,
+    ) {
+        if let (Some(left), 1) = (*left, lower_bits & 1) {
+            for ((sum, to), from) in self.east.sums.iter_mut().zip(lower.pixel(0)).zip(left) {
+                *sum += f64::from(to) - f64::from(from);
+            }
+            self.east.count += 1;
+        }
+        *left = (lower_bits >> (WINDOW - 1) == 1).then(|| lower.pixel(WINDOW - 1));
+        let value = |window: &Window, i| window.pixel(i).map(f64::from);
+        self.east.add(lower_bits & lower_bits >> 1, (lower, 1), (lower, 0), value);
+        self.north.add(upper_bits & lower_bits, (upper, 0), (lower, 0), value);
+    }
+
     fn add_of(&mut self, block: &Block, value: impl Fn(&Window, usize) -> [f64; 3]) {
         let (top, bottom) = (&block.top, &block.bottom);
         self.east.add(block.horizontal(), (top, 1), (top, 0), &value);
@@ -71,22 +91,40 @@ impl Sums {
     /// The tilts; `None` when a direction has no pair of inliers, or a channel's mean gradient is zero.
     #[must_use]
     pub fn tilts(&self) -> Option<Tilts> {
-        let mut result = Tilts { tilts: [0.0; 3], gradients: [[0.0; 2]; 3] };
-        for (channel, (tilt, gradient)) in result.tilts.iter_mut().zip(&mut result.gradients).enumerate() {
+        let mut gradients = [[0.0; 2]; 3];
+        for (channel, gradient) in gradients.iter_mut().enumerate() {
             let (e, n) = (self.east.mean(channel, 1.0)?, self.north.mean(channel, 1.0)?);
             let ne = self.north_east.mean(channel, FRAC_1_SQRT_2)?;
             let nw = self.north_west.mean(channel, FRAC_1_SQRT_2)?;
             // Least squares of eq. 20 over the four unit directions, whose normal matrix is twice the identity.
             let ix = 0.5 * (e + FRAC_1_SQRT_2 * (ne - nw));
             let iy = 0.5 * (n + FRAC_1_SQRT_2 * (ne + nw));
-            if !has_direction(ix, iy) {
-                return None;
-            }
-            *tilt = atan2(iy, ix);
             *gradient = [ix, iy];
         }
-        Some(result)
+        of_gradients(gradients)
     }
+
+    /// The same of [`Self::add_rows`] for rows `step` apart.
+    #[must_use]
+    pub fn tilts_of_rows(&self, step: usize) -> Option<Tilts> {
+        let mut gradients = [[0.0; 2]; 3];
+        for (channel, gradient) in gradients.iter_mut().enumerate() {
+            *gradient = [self.east.mean(channel, 1.0)?, self.north.mean(channel, 1.0 / step as f64)?];
+        }
+        of_gradients(gradients)
+    }
+}
+
+/// The tilts of the channels' mean gradients; `None` where one is zero.
+fn of_gradients(gradients: [[f64; 2]; 3]) -> Option<Tilts> {
+    let mut tilts = [0.0; 3];
+    for (tilt, [ix, iy]) in tilts.iter_mut().zip(gradients) {
+        if !has_direction(ix, iy) {
+            return None;
+        }
+        *tilt = atan2(iy, ix);
+    }
+    Some(Tilts { tilts, gradients })
 }
 
 /// The tilts from differences between neighbouring inliers along the axes and the diagonals.
@@ -137,16 +175,7 @@ pub fn tilts_along(image: &Image, inliers: impl Fn(&Window) -> u64, steps: &[[i3
     if parallel {
         return None;
     }
-    let mut result = Tilts { tilts: [0.0; 3], gradients: [[0.0; 2]; 3] };
-    for ((tilt, gradient), [a, b]) in result.tilts.iter_mut().zip(&mut result.gradients).zip(right) {
-        let (ix, iy) = ((yy * a - xy * b) / determinant, (xx * b - xy * a) / determinant);
-        if !has_direction(ix, iy) {
-            return None;
-        }
-        *tilt = atan2(iy, ix);
-        *gradient = [ix, iy];
-    }
-    Some(result)
+    of_gradients(right.map(|[a, b]| [(yy * a - xy * b) / determinant, (xx * b - xy * a) / determinant]))
 }
 
 /// The differences of all pairs of inliers one step apart.
