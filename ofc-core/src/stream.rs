@@ -147,6 +147,8 @@ pub struct State {
     strata: Strata,
     second_differences: (f64, u64),
     differences: pentland::Sums,
+    /// Those of the frames before.
+    history: pentland::Sums,
     inlier_count: usize,
     rows: Rows,
     candidates: [Option<Mat3>; MAX_CANDIDATES],
@@ -200,6 +202,7 @@ impl State {
             strata: Strata::new(lmeds.seed, room(width, height, lmeds.sample_size)),
             second_differences: (0.0, 0),
             differences: pentland::Sums::default(),
+            history: pentland::Sums::default(),
             inlier_count: 0,
             rows: Rows::new(height, &Census::default(), 0),
             candidates: [None; MAX_CANDIDATES],

@@ -147,6 +147,7 @@ impl State {
         self.last_row_tilts(memory);
         self.solution.inlier_count = self.inlier_count;
         self.solution.tilts = self.tilts();
+        self.history = self.differences;
         let goes_on = self.find_candidates(memory);
         self.go_on(goes_on, Pass::Slants);
     }

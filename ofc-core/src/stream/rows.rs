@@ -24,12 +24,12 @@ impl Rows {
         Self { step: step.min(height / FEWEST_ROWS).max(1), first: 0, frames: 0 }
     }
 
-    /// Other rows than in the frame before.
-    pub fn begin(&mut self) {
+    /// Other rows for the next frame.
+    pub fn advance(&mut self) {
         // Multiples of the golden ratio, modulo 1, of a step: frames one after the other lie far apart.
         const GOLDEN: u32 = 0x9e37_79b9;
-        self.first = (u64::from(self.frames.wrapping_mul(GOLDEN)) * self.step as u64 >> u32::BITS) as usize;
         self.frames = self.frames.wrapping_add(1);
+        self.first = (u64::from(self.frames.wrapping_mul(GOLDEN)) * self.step as u64 >> u32::BITS) as usize;
     }
 
     /// Whether this row is one of them.
@@ -74,7 +74,7 @@ mod tests {
             let mut rows = Rows { step, ..of(1, 0, 240, 0) };
             let mut counts = Vec::from([0; 240]);
             for _ in 0..10 * step {
-                rows.begin();
+                rows.advance();
                 for (y, count) in counts.iter_mut().enumerate() {
                     *count += i32::from(rows.hold(y));
                 }

@@ -2,7 +2,8 @@
 //!
 //! Every n-th row is looked at. The inliers of the old model are fitted by least squares, from the sums over them. The
 //! tilts are those of the mean differences along the rows, and between one row that is looked at and the next: in a column
-//! of inliers these add up to the difference between its ends, however far the rows lie apart. Of the slants
+//! of inliers these add up to the difference between its ends, however far the rows lie apart. As others are looked at in
+//! every frame, the differences of about n frames are averaged. Of the slants
 //! that agree with both those nearest to the old ones are taken. The dispersion grows or shrinks with the deviation of
 //! the inliers' residuals: as it was truncated before, so it is now.
 
@@ -51,7 +52,6 @@ impl State {
         self.moments = Moments::default();
         self.differences = pentland::Sums::default();
         self.inlier_count = 0;
-        self.rows.begin();
     }
 
     pub(super) fn row_refine(&mut self, y: usize, row: &Image, memory: &mut Memory) {
@@ -88,6 +88,8 @@ impl State {
     pub(super) fn end_refine(&mut self, memory: &mut Memory) {
         let inlier_share = f64::from(self.moments.count) / self.census.usable.max(1) as f64;
         let enough = self.census.usable >= MIN_PIXELS && inlier_share >= self.params.smallest_share;
+        self.history.remember(&self.differences, self.rows.step());
+        self.rows.advance();
         let change = if enough { self.refine(memory.values) } else { None };
         self.drift = Some(Drift { inlier_share, change });
         self.pass = if change.is_some() { Pass::Refine } else { Pass::Colors };
@@ -106,7 +108,7 @@ impl State {
     fn adopt_orientation(&mut self, form: &Coefficients, room: &mut [f32]) -> Option<([f64; 3], [f64; 3])> {
         let tilts = match self.params.solve.tilts {
             TiltEstimator::Given(tilts) => Tilts::alone(tilts),
-            _ => self.differences.tilts_of_rows(self.rows.step())?,
+            _ => self.history.tilts_along_axes()?,
         };
         let cosines = cosines(form)?;
         let mut roots = Candidates::new();

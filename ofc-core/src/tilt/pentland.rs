@@ -39,6 +39,14 @@ impl Mean {
         self.count += u64::from(bits.count_ones());
     }
 
+    /// Adds `scale` times other differences to `share` of these.
+    fn remember(&mut self, other: &Self, share: f64, scale: f64) {
+        for (sum, other) in self.sums.iter_mut().zip(other.sums) {
+            *sum = *sum * share + other * scale;
+        }
+        self.count = (self.count as f64 * share) as u64 + other.count;
+    }
+
     fn mean(&self, channel: usize, distance_reciprocal: f64) -> Option<f64> {
         let sum = self.sums.get(channel)?;
         (self.count > 0).then(|| sum / self.count as f64 * distance_reciprocal)
@@ -104,12 +112,19 @@ impl Sums {
         of_gradients(gradients)
     }
 
-    /// The same of [`Self::add_rows`] for rows `step` apart.
+    /// Adds a frame of which [`Self::add_rows`] saw every `step`-th row, and forgets one in `step` of the frames before.
+    pub fn remember(&mut self, frame: &Self, step: usize) {
+        let reciprocal = 1.0 / step as f64;
+        self.east.remember(&frame.east, 1.0 - reciprocal, 1.0);
+        self.north.remember(&frame.north, 1.0 - reciprocal, reciprocal);
+    }
+
+    /// The tilts along the axes alone; `None` as for [`Self::tilts`].
     #[must_use]
-    pub fn tilts_of_rows(&self, step: usize) -> Option<Tilts> {
+    pub fn tilts_along_axes(&self) -> Option<Tilts> {
         let mut gradients = [[0.0; 2]; 3];
         for (channel, gradient) in gradients.iter_mut().enumerate() {
-            *gradient = [self.east.mean(channel, 1.0)?, self.north.mean(channel, 1.0 / step as f64)?];
+            *gradient = [self.east.mean(channel, 1.0)?, self.north.mean(channel, 1.0)?];
         }
         of_gradients(gradients)
     }
