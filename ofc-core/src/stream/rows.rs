@@ -34,7 +34,7 @@ impl Rows {
 
     /// Whether this row is one of them.
     pub fn hold(&self, y: usize) -> bool {
-        y % self.step == self.first
+        y.checked_rem(self.step) == Some(self.first)
     }
 
     /// The first of them.
