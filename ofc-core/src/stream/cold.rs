@@ -273,20 +273,36 @@ fn multiply(colors: &mut [&mut [f32]; 3], factor: f64) {
     }
 }
 
-/// Keeps a row for the blocks that it makes with the next one: channels apart, NaN where the mask leaves a pixel out.
+/// Keeps a row for the blocks that it makes with the next one: channels apart, red NaN where the mask leaves a pixel out.
 #[inline(never)]
 fn keep(row: &Image, memory: &mut Memory) {
     let width = row.width();
     row.for_each_window(|window| keep_window(width, window, window.masked, memory));
 }
 
-/// The same of one window: NaN for all but `bits`.
+/// The same of one window: red is NaN for all but `bits`.
+#[inline(never)]
 pub(super) fn keep_window(width: usize, window: &Window, bits: u64, memory: &mut Memory) {
     for (channel, color) in window.color.iter().enumerate() {
-        let out = memory.values.get_mut(channel * width + window.x..).unwrap_or_default();
-        for (i, (out, &value)) in out.iter_mut().zip(color).take(window.len).enumerate() {
-            *out = if bits >> i & 1 == 1 { value } else { f32::NAN };
+        copy(memory.values.get_mut(channel * width + window.x..).unwrap_or_default(), color, window.len);
+    }
+    let red = memory.values.get_mut(window.x..).unwrap_or_default();
+    for_each_bit(first(window.len) & !bits, |i| {
+        if let Some(out) = red.get_mut(i) {
+            *out = f32::NAN;
         }
+    });
+}
+
+/// The first `count` bits.
+const fn first(count: usize) -> u64 {
+    if count < WINDOW { (1 << count) - 1 } else { u64::MAX }
+}
+
+/// Copies `count` values, of as many as there are.
+fn copy(to: &mut [f32], from: &[f32], count: usize) {
+    if let (Some(to), Some(from)) = (to.get_mut(..count), from.get(..count)) {
+        to.copy_from_slice(from);
     }
 }
 
@@ -294,12 +310,9 @@ pub(super) fn keep_window(width: usize, window: &Window, bits: u64, memory: &mut
 pub(super) fn kept(x: usize, width: usize, memory: &Memory, window: &mut Window) {
     window.x = x;
     window.len = width.saturating_sub(x).min(WINDOW);
-    window.masked = if window.len == WINDOW { u64::MAX } else { (1 << window.len) - 1 };
+    window.masked = first(window.len);
     for (channel, out) in window.color.iter_mut().enumerate() {
-        let from = memory.values.get(channel * width + x..).unwrap_or_default();
-        for (out, &value) in out.iter_mut().take(window.len).zip(from) {
-            *out = value;
-        }
+        copy(out, memory.values.get(channel * width + x..).unwrap_or_default(), window.len);
     }
 }
 

@@ -64,18 +64,22 @@ impl State {
     #[inline(never)]
     fn row_sums(&mut self, follows: bool, row: &Image, memory: &mut Memory) {
         let Inliers { usable, residual, norm } = &self.solution.inliers;
+        let scale = self.scale;
         let (mut above, mut left) = (Window::new(), None);
         row.for_each_window(|window| {
             let fitting = residual.bits(window, usable.count_window(window, &mut self.census));
             let mut sums = Moments::default();
-            for_each_bit(fitting, |i| {
-                sums.add(window.pixel(i).map(|c| f64::from(c) * self.scale));
-            });
-            self.moments.merge(&sums);
+            if fitting != 0 {
+                for_each_bit(fitting, |i| {
+                    let [r, g, b] = window.pixel(i);
+                    sums.add([f64::from(r) * scale, f64::from(g) * scale, f64::from(b) * scale]);
+                });
+                self.moments.merge(&sums);
+            }
             let inliers = norm.bits(window, fitting);
             self.inlier_count += inliers.count_ones() as usize;
             let mut inliers_above = 0;
-            if follows {
+            if follows && inliers != 0 {
                 kept(window.x, row.width(), memory, &mut above);
                 inliers_above = above.masked & above.bits(|r, _, _| !r.is_nan());
             }

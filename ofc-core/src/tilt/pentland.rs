@@ -26,14 +26,12 @@ impl Mean {
         (from, from_shift): (&Window, usize),
         value: impl Fn(&Window, usize) -> [f64; 3],
     ) {
-        let mut sums = [0.0; 3];
+        let [mut red, mut green, mut blue] = [0.0; 3];
         for_each_bit(bits, |i| {
-            let (to, from) = (value(to, i + to_shift), value(from, i + from_shift));
-            for ((sum, to), from) in sums.iter_mut().zip(to).zip(from) {
-                *sum += to - from;
-            }
+            let ([r, g, b], [r0, g0, b0]) = (value(to, i + to_shift), value(from, i + from_shift));
+            (red, green, blue) = (red + (r - r0), green + (g - g0), blue + (b - b0));
         });
-        for (total, sum) in self.sums.iter_mut().zip(sums) {
+        for (total, sum) in self.sums.iter_mut().zip([red, green, blue]) {
             *total += sum;
         }
         self.count += u64::from(bits.count_ones());
@@ -65,7 +63,7 @@ pub struct Sums {
 impl Sums {
     /// Adds the pairs of one block.
     pub fn add(&mut self, block: &Block) {
-        self.add_of(block, |window, i| window.pixel(i).map(f64::from));
+        self.add_of(block, color);
     }
 
     /// Adds the pairs of inliers along the `lower` of two rows, and those between it and the `upper` one. `left` is the
@@ -83,9 +81,8 @@ impl Sums {
             self.east.count += 1;
         }
         *left = (lower_bits >> (WINDOW - 1) == 1).then(|| lower.pixel(WINDOW - 1));
-        let value = |window: &Window, i| window.pixel(i).map(f64::from);
-        self.east.add(lower_bits & lower_bits >> 1, (lower, 1), (lower, 0), value);
-        self.north.add(upper_bits & lower_bits, (upper, 0), (lower, 0), value);
+        self.east.add(lower_bits & lower_bits >> 1, (lower, 1), (lower, 0), color);
+        self.north.add(upper_bits & lower_bits, (upper, 0), (lower, 0), color);
     }
 
     fn add_of(&mut self, block: &Block, value: impl Fn(&Window, usize) -> [f64; 3]) {
@@ -147,7 +144,15 @@ fn of_gradients(gradients: [[f64; 2]; 3]) -> Option<Tilts> {
 /// `inliers` gives the bits of a window's inliers. `None` when a direction has no pair of inliers, or a channel's mean
 /// gradient is zero: then it has no tilt.
 pub fn tilts(image: &Image, inliers: impl Fn(&Window) -> u64) -> Option<Tilts> {
-    tilts_of(image, inliers, |window, i| window.pixel(i).map(f64::from))
+    tilts_of(image, inliers, color)
+}
+
+/// A color in double precision.
+#[inline]
+fn color(window: &Window, i: usize) -> [f64; 3] {
+    // Not by map(), which is a call where code is made small.
+    let [r, g, b] = window.pixel(i);
+    [f64::from(r), f64::from(g), f64::from(b)]
 }
 
 /// The same of the picture that has `value` of every window's pixel in its place.
