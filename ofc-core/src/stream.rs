@@ -39,7 +39,7 @@ pub struct Params {
     /// refine it: a cold start is needed. Default 0.5, what least median of squares rests on.
     pub smallest_share: f64,
     /// About how many pixels a frame that refines the model looks at, those that the cold start could not use counting a
-    /// quarter: every n-th row, at least 16, others from frame to frame. 0 looks at all rows. Default 16,384.
+    /// third: every n-th row, at least 16, others from frame to frame. 0 looks at all rows. Default 16,384.
     pub refine_pixels: u32,
 }
 

@@ -4,8 +4,8 @@ use crate::image::Census;
 
 /// Rows looked at in a frame, at least, where it has so many.
 const FEWEST_ROWS: usize = 16;
-/// What a pixel that cannot be used takes: a quarter of one that can.
-const UNUSABLE: usize = 4;
+/// What a pixel that cannot be used takes: a third of one that can.
+const UNUSABLE: usize = 3;
 
 /// Rows `first`, `first + step`, ...
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ mod tests {
     #[test]
     fn as_many_rows_as_wanted() {
         assert_eq!(of(76_800, 0, 240, 16_384).step(), 5);
-        assert_eq!(of(36_000, 40_800, 240, 16_384).step(), 3);
+        assert_eq!(of(36_000, 40_800, 240, 16_384).step(), 4);
         assert_eq!(of(76_800, 0, 240, 0).step(), 1);
         assert_eq!(of(76_800, 0, 240, 76_800).step(), 1);
         assert_eq!(of(76_800, 0, 240, u32::MAX).step(), 1);
