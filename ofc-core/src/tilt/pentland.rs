@@ -63,7 +63,7 @@ pub struct Sums {
 impl Sums {
     /// Adds the pairs of one block.
     pub fn add(&mut self, block: &Block) {
-        self.add_of(block, color);
+        self.add_of(block, &color);
     }
 
     /// Adds the pairs of inliers along the `lower` of two rows, and those between it and the `upper` one. `left` is the
@@ -81,16 +81,16 @@ impl Sums {
             self.east.count += 1;
         }
         *left = (lower_bits >> (WINDOW - 1) == 1).then(|| lower.pixel(WINDOW - 1));
-        self.east.add(lower_bits & lower_bits >> 1, (lower, 1), (lower, 0), color);
-        self.north.add(upper_bits & lower_bits, (upper, 0), (lower, 0), color);
+        self.east.add(lower_bits & lower_bits >> 1, (lower, 1), (lower, 0), &color);
+        self.north.add(upper_bits & lower_bits, (upper, 0), (lower, 0), &color);
     }
 
-    fn add_of(&mut self, block: &Block, value: impl Fn(&Window, usize) -> [f64; 3]) {
+    fn add_of(&mut self, block: &Block, value: &impl Fn(&Window, usize) -> [f64; 3]) {
         let (top, bottom) = (&block.top, &block.bottom);
-        self.east.add(block.horizontal(), (top, 1), (top, 0), &value);
-        self.north.add(block.vertical(), (top, 0), (bottom, 0), &value);
-        self.north_east.add(block.rising(), (top, 1), (bottom, 0), &value);
-        self.north_west.add(block.falling(), (top, 0), (bottom, 1), &value);
+        self.east.add(block.horizontal(), (top, 1), (top, 0), value);
+        self.north.add(block.vertical(), (top, 0), (bottom, 0), value);
+        self.north_east.add(block.rising(), (top, 1), (bottom, 0), value);
+        self.north_west.add(block.falling(), (top, 0), (bottom, 1), value);
     }
 
     /// The tilts; `None` when a direction has no pair of inliers, or a channel's mean gradient is zero.
