@@ -13,7 +13,7 @@ board() {
     start=("$folder/start.c")
     before=()
     # Inlining costs more flash than it saves instructions.
-    flags="-Cllvm-args=-inline-threshold=5 -Cllvm-args=-align-loops=1"
+    flags="-Cllvm-args=-inline-threshold=5 -Cllvm-args=-align-loops=1 -Cllvm-args=-arm-promote-constant=1"
     case $1 in
     cortex-m7)
         triple=thumbv7em-none-eabihf

@@ -26,7 +26,7 @@ pub struct Moments {
 
 impl Moments {
     /// Adds a color.
-    #[inline]
+    #[inline(never)]
     pub fn add(&mut self, [r, g, b]: [f64; 3]) {
         let (rr, gg, bb, rg, rb, gb) = (r * r, g * g, b * b, r * g, r * b, g * b);
         // A line a term: a loop over them takes twice the instructions where code is made small.
@@ -158,27 +158,30 @@ impl Moments {
     #[inline(never)]
     pub fn solve(&self) -> Option<LeastSquares> {
         let [rr, gg, bb, rg, rb, gb] = self.quadratic;
-        let inverse = self.inverse()?;
+        let mut inverse = self.normal_matrix();
+        invert(&mut inverse)?;
         let coefficients = mat6::apply(&inverse, &[rr, gg, bb, 2.0 * rg, 2.0 * rb, 2.0 * gb]);
         coefficients.iter().all(|c| c.is_finite()).then_some(LeastSquares { coefficients, inverse })
     }
+}
 
-    /// (M^T M)^-1; `None` when the colors do not determine z.
-    #[inline(never)]
-    fn inverse(&self) -> Option<[[f64; TERMS]; TERMS]> {
-        let matrix = self.normal_matrix();
-        // Cholesky of the matrix with a unit diagonal: its pivots then say how much of a column the others explain.
-        let diagonal = mat6::diagonal(&matrix);
-        if diagonal.iter().any(|&entry| !(entry > 0.0 && entry.is_finite())) {
-            return None;
-        }
-        let scale = diagonal.map(|entry| 1.0 / sqrt(entry));
-        let factor = mat6::factor(&mat6::scale(&matrix, &scale))?;
-        if mat6::diagonal(&factor).iter().any(|&pivot| pivot * pivot < SMALLEST_PIVOT) {
-            return None;
-        }
-        Some(mat6::scale(&mat6::inverse(&factor), &scale))
+/// Makes (M^T M)^-1 of M^T M; `None` when the colors do not determine z.
+#[inline(never)]
+fn invert(matrix: &mut Mat6) -> Option<()> {
+    // Cholesky of the matrix with a unit diagonal: its pivots then say how much of a column the others explain.
+    let diagonal = mat6::diagonal(matrix);
+    if diagonal.iter().any(|&entry| !(entry > 0.0 && entry.is_finite())) {
+        return None;
     }
+    let scale = diagonal.map(|entry| 1.0 / sqrt(entry));
+    mat6::scale(matrix, &scale);
+    mat6::factor(matrix)?;
+    if mat6::diagonal(matrix).iter().any(|&pivot| pivot * pivot < SMALLEST_PIVOT) {
+        return None;
+    }
+    *matrix = mat6::inverse(matrix);
+    mat6::scale(matrix, &scale);
+    Some(())
 }
 
 /// The matrix of these columns times `vector` / `divisor`, without temporaries.

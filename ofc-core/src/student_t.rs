@@ -4,10 +4,10 @@
 //! M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions", 26.7.1 and 26.5.8 (the continued fraction of
 //! the incomplete beta function, evaluated by Lentz's method) and 6.1.47 (the asymptotic series of a ratio of gammas).
 
-use libm::{erfc, exp, fabs, log, sqrt};
+use libm::{exp, fabs, log, sqrt};
 
-/// Above this many degrees of freedom t is normal to seven digits, and the continued fraction grows long.
-const NORMAL_FROM: f64 = 1e6;
+/// With so many degrees of freedom t is normal to seven digits, and the continued fraction is long: more count as so many.
+const MOST_DEGREES: f64 = 1e6;
 
 const SQRT_PI: f64 = 1.772_453_850_905_516;
 
@@ -20,9 +20,7 @@ pub fn two_sided_p(t: f64, degrees: f64) -> f64 {
     if t.is_nan() || degrees.is_nan() || degrees <= 0.0 {
         return f64::NAN;
     }
-    if degrees > NORMAL_FROM {
-        return erfc(fabs(t) / core::f64::consts::SQRT_2);
-    }
+    let degrees = degrees.min(MOST_DEGREES);
     let squared = t * t;
     if squared.is_infinite() {
         return 0.0;

@@ -110,7 +110,7 @@ pub unsafe extern "C" fn ofc_lmeds_fit(
         // SAFETY: checked and disjoint.
         let result =
             lmeds::fit(view, usable, &params, unsafe { floats(workspace, need) }).map_err(of_fit_error)?;
-        fit.write(result.into());
+        fit.write((&result).into());
         inliers.write(Inliers { residual: result.band, ..Inliers::all(usable) }.into());
         Ok(OFC_STATUS_OK)
     };

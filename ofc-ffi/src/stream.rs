@@ -372,7 +372,7 @@ pub unsafe extern "C" fn ofc_stream_solution(
         if !state.is_concluded() {
             return Err(OFC_STATUS_NOT_SOLVED);
         }
-        out.write(state.solution().into());
+        out.place().set(state.solution());
         Ok(of_outcome(state.solution().outcome))
     };
     of(body())

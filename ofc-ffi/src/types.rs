@@ -310,8 +310,9 @@ pub struct ofc_color_fit {
     pub subsets: u32,
 }
 
-impl From<Fit> for ofc_color_fit {
-    fn from(fit: Fit) -> Self {
+impl From<&Fit> for ofc_color_fit {
+    #[inline(never)]
+    fn from(fit: &Fit) -> Self {
         let Fit {
             robust,
             median_residual,
@@ -326,7 +327,7 @@ impl From<Fit> for ofc_color_fit {
             usable: _,
             inliers,
             subsets,
-        } = fit;
+        } = *fit;
         Self {
             robust,
             median_residual,
