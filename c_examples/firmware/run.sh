@@ -46,7 +46,7 @@ budget() {
 for name in cortex-m7 cortex-m4f riscv32; do
     board "$name"
     build_archive "$name" "$triple" "$flags"
-    "${compiler[@]}" -Os "$here"/{main,scene,print}.c "${start[@]}" "${before[@]}" "$archive" -lgcc -o "$out/$name.elf"
+    "${compiler[@]}" -Oz "$here"/{main,scene,print}.c "${start[@]}" "${before[@]}" "$archive" -lgcc -o "$out/$name.elf"
     cannot_panic "$out/$name.elf"
     if "$tools-objdump" -d "$out/$name.elf" | grep -E '\bblx[[:space:]]+r'; then
         echo "$name: a call through a pointer, which no call graph shows" >&2

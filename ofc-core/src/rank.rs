@@ -218,6 +218,13 @@ impl Plane {
     }
 }
 
+/// The shortest solution of three equations that may be singular.
+#[inline(never)]
+fn solve(matrix: &Mat3, right: [f64; 3]) -> [f64; 3] {
+    let (inverse, _) = mat3::pseudo_inverse(&mat3::svd(matrix), 1e-14);
+    mat3::apply(&inverse, right)
+}
+
 /// The conic that colors in a plane lie on, as a form of rank 2 in color space.
 struct Conic {
     c: Mat3,
@@ -229,7 +236,8 @@ impl Conic {
     #[inline(never)]
     fn of(pixels: &impl Pixels, inliers: impl Fn(&Window) -> u64, colors: &Colors) -> Option<Self> {
         let plane = Plane::of(colors);
-        let (coefficients, count) = Self::fit(pixels, &inliers, &plane);
+        let (normal, right, count) = Self::sums(pixels, &inliers, &plane);
+        let coefficients = solve(&normal, right);
         let residuals = Self::residuals(pixels, &inliers, &plane, coefficients);
         let (Plane { u, v }, [a, b, d]) = (plane, coefficients);
         let mut c = [[0.0; 3]; 3];
@@ -240,14 +248,6 @@ impl Conic {
         }
         let finite = c.iter().flatten().all(|entry| entry.is_finite());
         (finite && count > 0).then(|| Self { c, residual_deviation: sqrt(residuals / count as f64) })
-    }
-
-    /// The coefficients, and of how many pixels.
-    #[inline(never)]
-    fn fit(pixels: &impl Pixels, inliers: &impl Fn(&Window) -> u64, plane: &Plane) -> ([f64; 3], u64) {
-        let (normal, right, count) = Self::sums(pixels, inliers, plane);
-        let (inverse, _) = mat3::pseudo_inverse(&mat3::svd(&normal), 1e-14);
-        (mat3::apply(&inverse, right), count)
     }
 
     /// The normal equations: a window does not lie on the stack while they are solved.
