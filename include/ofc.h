@@ -1034,8 +1034,12 @@ typedef struct ofc_stream_params {
     // Where less than this share of the usable pixels fits the model, a frame does not refine it and
     // OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
     double smallest_share;
+    // About how many pixels a frame that refines the model looks at, those that the cold start could not use counting a
+    // third: every n-th row, at least 16, others from frame to frame. 0 looks at all rows. Default 16,384. The tilts
+    // are averaged over about n frames.
+    uint32_t refine_pixels;
     // Must be zero.
-    uint32_t reserved[4];
+    uint32_t reserved[3];
 } ofc_stream_params;
 
 // What the rows of a stream's frame are for: one of OFC_PASS_*.
@@ -1043,7 +1047,7 @@ typedef int32_t ofc_stream_pass;
 
 // What the last OFC_PASS_REFINE frame said of the model from before it.
 typedef struct ofc_stream_drift {
-    // Share of the usable pixels whose residual the old model accepts.
+    // Share of the usable pixels, of those looked at, whose residual the old model accepts.
     double inlier_share;
     // Angles between the old and the new rows of F; zero where there is no new model.
     double angle_rad[3];
@@ -1824,7 +1828,8 @@ size_t ofc_stream_size(int32_t width,
 //     ofc_status status = ofc_stream_end(stream, &pass);
 //
 // A cold start takes the passes over colors and tilts, and where eqs. 25 have several roots that over slants, all of one
-// frame or of consecutive frames of a scene at rest. Then there is F; every further frame refines it. Medians and fits of
+// frame or of consecutive frames of a scene at rest. Then there is F; a few rows of every
+// further frame refine it, and for the others ofc_stream_row() does next to nothing. Medians and fits of
 // a cold start are those of a stratified sample of the colors. Where the sample holds all usable pixels, the solution is
 // that of ofc_solve() to the bit, but for the integral of a lone candidate, which is not computed: infinite.
 //
@@ -1889,7 +1894,8 @@ ofc_status ofc_stream_end(struct ofc_stream *stream,
 //
 // @param stream    The stream.
 // @param solution  Output. After frames that refined it: F, its stages and the fit are the last frame's, rank is that of
-//                  the cold start, and candidates have no integral (infinite).
+//                  the cold start, candidates have no integral (infinite), tilts come from the axes alone, and counts
+//                  and census are of the pixels that were looked at.
 // @return As ofc_solve(), for the cold start; OFC_STATUS_NOT_SOLVED, `solution` untouched, before its last pass;
 //         OFC_STATUS_NO_STREAM; the status of an invalid argument.
 ofc_status ofc_stream_solution(struct ofc_stream *stream,

@@ -2,7 +2,7 @@
  * ofc without an operating system, C library or heap: a frame comes row by row, is solved, and so are the frames after
  * it, from what the first one taught.
  *
- * What is printed after a '#' is read by measure.sh.
+ * What is printed after a '#' is read by run.sh.
  */
 #include "board.h"
 #include "print.h"
@@ -27,35 +27,55 @@ static ofc_image camera(int number, int y)
     return image;
 }
 
-/* One frame through the stream; the instructions that ofc takes for it, without the camera's, are added. */
-static ofc_status pass(int number, ofc_stream_pass *next, uint64_t *instructions)
+/* What ofc's calls took: instructions since they were last set to zero, and the most bytes of stack of any call. */
+static uint64_t instructions;
+static uint32_t stack_in_call;
+
+static uint64_t before_call(void)
 {
-    uint64_t start = board_instructions();
-    ofc_status status = ofc_stream_begin(stream, NULL);
-    *instructions += board_instructions() - start;
+    board_stack_paint();
+    return board_instructions();
+}
+
+static ofc_status after_call(uint64_t start, ofc_status status)
+{
+    instructions += board_instructions() - start;
+    const uint32_t taken = board_stack_taken();
+    if (taken > stack_in_call)
+        stack_in_call = taken;
+    return status;
+}
+
+/* STATUS = CALL, measured: the start is read before the call is made. */
+#define MEASURE(status, call)                                                                                          \
+    do {                                                                                                               \
+        const uint64_t start = before_call();                                                                          \
+        status = after_call(start, call);                                                                              \
+    } while (0)
+
+/* One frame through the stream. */
+static ofc_status pass(int number, ofc_stream_pass *next)
+{
+    ofc_status status;
+    MEASURE(status, ofc_stream_begin(stream, NULL));
     for (int y = 0; y < HEIGHT && status == OFC_STATUS_OK; y++) {
         const ofc_image image = camera(number, y);
-        start = board_instructions();
-        status = ofc_stream_row(stream, y, &image);
-        *instructions += board_instructions() - start;
+        MEASURE(status, ofc_stream_row(stream, y, &image));
     }
-    start = board_instructions();
     if (status == OFC_STATUS_OK)
-        status = ofc_stream_end(stream, next);
-    *instructions += board_instructions() - start;
+        MEASURE(status, ofc_stream_end(stream, next));
     return status;
 }
 
 /* The normals of a frame, and their mean angle to the truth. */
-static ofc_status look(int number, float *error_deg, uint64_t *instructions)
+static ofc_status look(int number, float *error_deg)
 {
     float sum = 0;
     uint32_t count = 0;
     for (int y = 0; y < HEIGHT; y++) {
         const ofc_image image = camera(number, y);
-        const uint64_t start = board_instructions();
-        const ofc_status status = ofc_stream_normals_row(stream, &image, normals[0]);
-        *instructions += board_instructions() - start;
+        ofc_status status;
+        MEASURE(status, ofc_stream_normals_row(stream, &image, normals[0]));
         if (status != OFC_STATUS_OK)
             return status;
         for (int x = 0; x < WIDTH; x++) {
@@ -72,12 +92,12 @@ static ofc_status look(int number, float *error_deg, uint64_t *instructions)
     return OFC_STATUS_OK;
 }
 
-static void report(const char *name, uint64_t instructions)
+static void report(const char *name, uint32_t value)
 {
-    print_text("# instructions ");
+    print_text("# ");
     print_text(name);
     print_text(" ");
-    print_integer((uint32_t)instructions);
+    print_integer(value);
     print_text("\n");
 }
 
@@ -98,34 +118,35 @@ static void print_lamp(int c)
 
 int main(void)
 {
-    uint64_t start = board_instructions();
+    const uint64_t start = board_instructions();
     for (int y = 0; y < HEIGHT; y++)
         (void)camera(0, y);
-    report("render", board_instructions() - start);
+    report("instructions render", (uint32_t)(board_instructions() - start));
 
     /* Cold: the first frame, as often as it takes. */
-    uint64_t instructions = 0;
     ofc_stream_params params;
     ofc_stream_pass next = OFC_PASS_COLORS;
-    ofc_status status = ofc_stream_params_default(&params);
+    ofc_status status;
+    MEASURE(status, ofc_stream_params_default(&params));
     if (status == OFC_STATUS_OK)
-        status = ofc_stream_init(WIDTH, HEIGHT, OFC_PIXEL_RGB8, &params, memory, sizeof memory, &stream);
+        MEASURE(status, ofc_stream_init(WIDTH, HEIGHT, OFC_PIXEL_RGB8, &params, memory, sizeof memory, &stream));
+    instructions = 0;
     while (status == OFC_STATUS_OK && next != OFC_PASS_REFINE)
-        status = pass(0, &next, &instructions);
-    report("cold", instructions);
+        status = pass(0, &next);
+    report("instructions cold", (uint32_t)instructions);
 
     for (int number = 0; number < 3 && status == OFC_STATUS_OK; number++) {
         float error_deg = 0;
         instructions = 0;
         if (number > 0) /* warm: the next frame refines what the last one taught */
-            status = pass(number, &next, &instructions);
+            status = pass(number, &next);
         if (number == 1)
-            report("warm", instructions);
+            report("instructions warm", (uint32_t)instructions);
         instructions = 0;
         if (status == OFC_STATUS_OK)
-            status = look(number, &error_deg, &instructions);
+            status = look(number, &error_deg);
         if (number == 0)
-            report("normals", instructions);
+            report("instructions normals", (uint32_t)instructions);
         print_text("frame ");
         print_integer((uint32_t)number);
         print_text(": mean angle to the true normals ");
@@ -135,7 +156,7 @@ int main(void)
             return 2;
     }
     if (status == OFC_STATUS_OK)
-        status = ofc_stream_solution(stream, &solution);
+        MEASURE(status, ofc_stream_solution(stream, &solution));
     if (status != OFC_STATUS_OK) {
         print_text(ofc_status_message(status));
         print_text("\n");
@@ -143,8 +164,7 @@ int main(void)
     }
     for (int c = 0; c < 3; c++)
         print_lamp(c);
-    print_text("# stack ");
-    print_integer(board_stack_peak());
-    print_text("\n");
+    report("stack call", stack_in_call);
+    report("stack program", board_stack_peak());
     return 0;
 }

@@ -448,19 +448,27 @@ impl Usable {
     pub fn count_window(&self, window: &Window, census: &mut Census) -> u64 {
         let exposed = self.exposed(window);
         let usable = self.shadows.lit(window, exposed);
-        let finite = window.masked & window.bits(|r, g, b| r.is_finite() && g.is_finite() && b.is_finite());
-        let dark = finite & window.bits(|r, g, b| r <= 0.0 && g <= 0.0 && b <= 0.0);
         census.usable += usable.count_ones() as usize;
-        census.masked_out += window.len - window.masked.count_ones() as usize;
-        census.non_finite += (window.masked & !finite).count_ones() as usize;
-        census.dark += dark.count_ones() as usize;
-        census.saturated += (finite & !dark & !exposed).count_ones() as usize;
         census.shaded += (exposed & !usable).count_ones() as usize;
-        for_each_bit(usable, |i| {
-            for value in window.pixel(i) {
-                census.largest = census.largest.max(value.abs());
+        census.masked_out += window.len - window.masked.count_ones() as usize;
+        for_each_bit(window.masked & !exposed, |i| {
+            let [r, g, b] = window.pixel(i);
+            if !(r.is_finite() && g.is_finite() && b.is_finite()) {
+                census.non_finite += 1;
+            } else if r.max(g).max(b) <= 0.0 {
+                census.dark += 1;
+            } else {
+                census.saturated += 1;
             }
         });
+        let mut largest = census.largest.to_bits();
+        for_each_bit(usable, |i| {
+            let [r, g, b] = window.pixel(i);
+            // Finite floats without a sign are in the order of their bits.
+            let [r, g, b] = [r.abs().to_bits(), g.abs().to_bits(), b.abs().to_bits()];
+            largest = largest.max(r).max(g).max(b);
+        });
+        census.largest = f32::from_bits(largest);
         usable
     }
 }

@@ -58,7 +58,7 @@ impl Band {
     /// Which of the finite colors `among` the window's lie within. Single precision decides where its error cannot matter,
     /// which is nearly everywhere; the answer is that of double precision.
     #[inline(never)]
-    fn bits(&self, window: &Window, among: u64) -> u64 {
+    pub(crate) fn bits(&self, window: &Window, among: u64) -> u64 {
         if among == 0 {
             return 0;
         }

@@ -44,16 +44,13 @@ pub fn max_abs(a: &Mat6) -> f64 {
     a.iter().flatten().fold(0.0, |largest, entry| fabs(*entry).max(largest))
 }
 
-/// `a` with row and column i multiplied by `factors`\[i\].
-#[must_use]
-pub fn scale(a: &Mat6, factors: &[f64; N]) -> Mat6 {
-    let mut scaled = *a;
-    for (column, column_factor) in scaled.iter_mut().zip(factors) {
+/// Multiplies row and column i by `factors`\[i\].
+pub fn scale(a: &mut Mat6, factors: &[f64; N]) {
+    for (column, column_factor) in a.iter_mut().zip(factors) {
         for (entry, row_factor) in column.iter_mut().zip(factors) {
             *entry = *row_factor * *entry * *column_factor;
         }
     }
-    scaled
 }
 
 /// The diagonal.
@@ -119,12 +116,10 @@ fn reflection_axis(column: &mut [f64]) -> Option<f64> {
     Some(-signed)
 }
 
-/// L of `matrix` = L Lᵀ: its columns, zero above the diagonal; `None` when `matrix` is not positive definite.
-#[must_use]
-pub fn factor(matrix: &Mat6) -> Option<Mat6> {
-    let mut factor = *matrix;
+/// Makes L of L Lᵀ: its columns, zero above the diagonal; `None` when the matrix is not positive definite.
+pub fn factor(matrix: &mut Mat6) -> Option<()> {
     for j in 0..N {
-        let (done, rest) = factor.split_at_mut_checked(j)?;
+        let (done, rest) = matrix.split_at_mut_checked(j)?;
         let column = rest.first_mut()?;
         for before in done {
             let share = *before.get(j)?;
@@ -141,7 +136,7 @@ pub fn factor(matrix: &Mat6) -> Option<Mat6> {
             };
         }
     }
-    Some(factor)
+    Some(())
 }
 
 /// (L Lᵀ)⁻¹ for the columns of L.
@@ -199,7 +194,9 @@ mod tests {
         let mut rng = Rng::new(3);
         for _ in 0..100 {
             let matrix = random_matrix(&mut rng);
-            let product = multiply(&matrix, &inverse(&factor(&matrix).unwrap()));
+            let mut lower = matrix;
+            factor(&mut lower).unwrap();
+            let product = multiply(&matrix, &inverse(&lower));
             for (i, column) in product.iter().enumerate() {
                 for (j, entry) in column.iter().enumerate() {
                     let expected = if i == j { 1.0 } else { 0.0 };
@@ -229,9 +226,9 @@ mod tests {
     fn what_is_not_positive_definite_has_no_factor() {
         let mut matrix = random_matrix(&mut Rng::new(4));
         matrix[3][3] = -1.0;
-        assert_eq!(factor(&matrix), None);
-        assert_eq!(factor(&[[1.0; N]; N]), None);
+        assert_eq!(factor(&mut { matrix }), None);
+        assert_eq!(factor(&mut [[1.0; N]; N]), None);
         matrix[0][0] = f64::NAN;
-        assert_eq!(factor(&matrix), None);
+        assert_eq!(factor(&mut matrix), None);
     }
 }

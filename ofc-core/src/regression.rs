@@ -30,32 +30,34 @@ pub struct Moments {
 
 impl Moments {
     /// Adds a color.
-    #[inline]
+    #[inline(never)]
     pub fn add(&mut self, [r, g, b]: [f64; 3]) {
         let (rr, gg, bb, rg, rb, gb) = (r * r, g * g, b * b, r * g, r * b, g * b);
-        let quartic = [
-            rr * rr,
-            rr * gg,
-            rr * bb,
-            rr * rg,
-            rr * rb,
-            rr * gb,
-            gg * gg,
-            gg * bb,
-            gg * rg,
-            gg * rb,
-            gg * gb,
-            bb * bb,
-            bb * rg,
-            bb * rb,
-            bb * gb,
-        ];
-        for (sum, term) in self.quartic.iter_mut().zip(quartic) {
-            *sum += term;
-        }
-        for (sum, term) in self.quadratic.iter_mut().zip([rr, gg, bb, rg, rb, gb]) {
-            *sum += term;
-        }
+        // A line a term: a loop over them takes twice the instructions where code is made small.
+        let [r4, r2g2, r2b2, r3g, r3b, r2gb, g4, g2b2, rg3, rg2b, g3b, b4, rgb2, rb3, gb3] =
+            &mut self.quartic;
+        *r4 += rr * rr;
+        *r2g2 += rr * gg;
+        *r2b2 += rr * bb;
+        *r3g += rr * rg;
+        *r3b += rr * rb;
+        *r2gb += rr * gb;
+        *g4 += gg * gg;
+        *g2b2 += gg * bb;
+        *rg3 += gg * rg;
+        *rg2b += gg * rb;
+        *g3b += gg * gb;
+        *b4 += bb * bb;
+        *rgb2 += bb * rg;
+        *rb3 += bb * rb;
+        *gb3 += bb * gb;
+        let [r2, g2, b2, sum_rg, sum_rb, sum_gb] = &mut self.quadratic;
+        *r2 += rr;
+        *g2 += gg;
+        *b2 += bb;
+        *sum_rg += rg;
+        *sum_rb += rb;
+        *sum_gb += gb;
         self.count += 1;
     }
 
@@ -160,27 +162,30 @@ impl Moments {
     #[inline(never)]
     pub fn solve(&self) -> Option<LeastSquares> {
         let [rr, gg, bb, rg, rb, gb] = self.quadratic;
-        let inverse = self.inverse()?;
+        let mut inverse = self.normal_matrix();
+        invert(&mut inverse)?;
         let coefficients = mat6::apply(&inverse, &[rr, gg, bb, 2.0 * rg, 2.0 * rb, 2.0 * gb]);
         coefficients.iter().all(|c| c.is_finite()).then_some(LeastSquares { coefficients, inverse })
     }
+}
 
-    /// (M^T M)^-1; `None` when the colors do not determine z.
-    #[inline(never)]
-    fn inverse(&self) -> Option<[[f64; TERMS]; TERMS]> {
-        let matrix = self.normal_matrix();
-        // Cholesky of the matrix with a unit diagonal: its pivots then say how much of a column the others explain.
-        let diagonal = mat6::diagonal(&matrix);
-        if diagonal.iter().any(|&entry| !(entry > 0.0 && entry.is_finite())) {
-            return None;
-        }
-        let scale = diagonal.map(|entry| 1.0 / sqrt(entry));
-        let factor = mat6::factor(&mat6::scale(&matrix, &scale))?;
-        if mat6::diagonal(&factor).iter().any(|&pivot| pivot * pivot < SMALLEST_PIVOT) {
-            return None;
-        }
-        Some(mat6::scale(&mat6::inverse(&factor), &scale))
+/// Makes (M^T M)^-1 of M^T M; `None` when the colors do not determine z.
+#[inline(never)]
+fn invert(matrix: &mut Mat6) -> Option<()> {
+    // Cholesky of the matrix with a unit diagonal: its pivots then say how much of a column the others explain.
+    let diagonal = mat6::diagonal(matrix);
+    if diagonal.iter().any(|&entry| !(entry > 0.0 && entry.is_finite())) {
+        return None;
     }
+    let scale = diagonal.map(|entry| 1.0 / sqrt(entry));
+    mat6::scale(matrix, &scale);
+    mat6::factor(matrix)?;
+    if mat6::diagonal(matrix).iter().any(|&pivot| pivot * pivot < SMALLEST_PIVOT) {
+        return None;
+    }
+    *matrix = mat6::inverse(matrix);
+    mat6::scale(matrix, &scale);
+    Some(())
 }
 
 /// The matrix of these columns times `vector` / `divisor`, without temporaries.

@@ -5,13 +5,14 @@
 //! sample. The pass over its tilts sums the differences between neighbouring inliers, of this row and the one before it,
 //! and ends with F where there is one candidate for the slants. Where there are several, a pass over the slants sums the
 //! integral (15) of all of them at once, and ends with F. Then normals and inliers of any row can be had, and one pass
-//! over a later frame refines the model.
+//! over a few rows of a later frame refines the model.
 //!
 //! Where the sample holds every usable pixel the result is that of [`solve`](crate::solve::solve), bit for bit (but the
 //! integral of a lone candidate, which is not computed: infinite).
 
 mod cold;
 mod output;
+mod rows;
 mod strata;
 mod warm;
 
@@ -25,6 +26,7 @@ use crate::mat3::Mat3;
 use crate::regression::Moments;
 use crate::solve::{self, Outcome, Road, SlantFallback, Solution};
 use crate::tilt::{TiltEstimator, pentland};
+use rows::Rows;
 use strata::Strata;
 
 /// What to do.
@@ -36,13 +38,16 @@ pub struct Params {
     /// Where less than this share of the usable pixels has a residual that the model accepts, in [0, 1], a frame does not
     /// refine it: a cold start is needed. Default 0.5, what least median of squares rests on.
     pub smallest_share: f64,
+    /// About how many pixels a frame that refines the model looks at, those that the cold start could not use counting a
+    /// third: every n-th row, at least 16, others from frame to frame. 0 looks at all rows. Default 16,384.
+    pub refine_pixels: u32,
 }
 
 impl Default for Params {
     fn default() -> Self {
         let lmeds = lmeds::Params { sample_size: 2048, ..lmeds::Params::default() };
         let solve = solve::Params { lmeds, road: Road::Paper, ..solve::Params::default() };
-        Self { solve, smallest_share: 0.5 }
+        Self { solve, smallest_share: 0.5, refine_pixels: 16_384 }
     }
 }
 
@@ -142,7 +147,10 @@ pub struct State {
     strata: Strata,
     second_differences: (f64, u64),
     differences: pentland::Sums,
+    /// Those of the frames before.
+    history: pentland::Sums,
     inlier_count: usize,
+    rows: Rows,
     candidates: [Option<Mat3>; MAX_CANDIDATES],
     integrals: [integrability::Sum; MAX_CANDIDATES],
     moments: Moments,
@@ -194,7 +202,9 @@ impl State {
             strata: Strata::new(lmeds.seed, room(width, height, lmeds.sample_size)),
             second_differences: (0.0, 0),
             differences: pentland::Sums::default(),
+            history: pentland::Sums::default(),
             inlier_count: 0,
+            rows: Rows::new(height, &Census::default(), 0),
             candidates: [None; MAX_CANDIDATES],
             integrals: [integrability::Sum::default(); MAX_CANDIDATES],
             moments: Moments::default(),

@@ -142,6 +142,12 @@ impl<T: Plain> Out<T> {
         Ok(Self { pointer, extent: extent(pointer.cast_const(), 1)? })
     }
 
+    /// Where the value goes, for large ones: made in place, without a copy on the stack. What is there is not a value yet.
+    pub fn place<'a>(self) -> &'a mut T {
+        // SAFETY: as for `write`; any bytes are a plain value.
+        unsafe { &mut *self.pointer }
+    }
+
     /// Writes the value.
     pub fn write(self, value: T) {
         // SAFETY: checked when made; that it can be written is the caller's part of the contract.

@@ -19,7 +19,7 @@ use crate::types::{
 };
 use core::ffi::c_void;
 use ofc_core::joint::{Evidence, Joint};
-use ofc_core::solve::{self, Candidate, Params, Road, SlantFallback, SlantSource, Solution};
+use ofc_core::solve::{self, Candidate, Choice, Params, Road, SlantFallback, SlantSource, Solution};
 use ofc_core::tilt::TiltEstimator;
 
 /// Where the slants come from: one of OFC_SLANTS_*.
@@ -262,8 +262,10 @@ impl From<Candidate> for ofc_slants {
     }
 }
 
-impl From<&Solution> for ofc_solution {
-    fn from(solution: &Solution) -> Self {
+impl ofc_solution {
+    /// Sets every field, one after the other: together they would lie on the stack twice.
+    #[inline(never)]
+    pub(crate) fn set(&mut self, solution: &Solution) {
         let Solution {
             outcome,
             census,
@@ -278,46 +280,43 @@ impl From<&Solution> for ofc_solution {
             joint,
             choice,
         } = solution;
-        let mut result = Self {
-            outcome: of_outcome(*outcome),
-            slant_source: OFC_SLANTS_NONE,
-            candidate_count: 0,
-            chosen: -1,
-            inlier_count: count(*inlier_count),
-            reserved: 0,
-            census: (*census).into(),
-            fit: ofc_color_fit { color_deviations: *color_deviations, ..ofc_color_fit::default() },
-            rank: rank.map_or(ofc_rank::default(), ofc_rank::from),
-            norm_location: norm_location.map_or(ofc_location::default(), ofc_location::from),
-            inliers: (*inliers).into(),
-            ellipsoid: ellipsoid.map_or(ofc_ellipsoid::default(), ofc_ellipsoid::from),
-            tilts: tilts.map_or(ofc_tilts::default(), ofc_tilts::from),
-            slant_rad: [0.0; 3],
-            confidence: joint.map_or(ofc_confidence::default(), ofc_confidence::from),
-            candidates: [ofc_slants::default(); OFC_MAX_CANDIDATES],
-            orientation: ofc_orientation::default(),
+        self.outcome = of_outcome(*outcome);
+        self.inlier_count = count(*inlier_count);
+        self.reserved = 0;
+        self.census = (*census).into();
+        self.fit = fit.as_ref().map_or(ofc_color_fit::default(), ofc_color_fit::from);
+        self.fit.color_deviations = fit.as_ref().map_or(*color_deviations, |fit| fit.color_deviations);
+        self.rank = rank.map_or(ofc_rank::default(), ofc_rank::from);
+        self.norm_location = norm_location.map_or(ofc_location::default(), ofc_location::from);
+        self.inliers = (*inliers).into();
+        self.ellipsoid = ellipsoid.map_or(ofc_ellipsoid::default(), ofc_ellipsoid::from);
+        self.tilts = tilts.map_or(ofc_tilts::default(), ofc_tilts::from);
+        self.confidence = joint.map_or(ofc_confidence::default(), ofc_confidence::from);
+        self.set_choice(choice.as_ref());
+    }
+
+    #[inline(never)]
+    fn set_choice(&mut self, choice: Option<&Choice>) {
+        (self.slant_source, self.candidate_count, self.chosen) = (OFC_SLANTS_NONE, 0, -1);
+        self.slant_rad = [0.0; 3];
+        self.candidates = [ofc_slants::default(); OFC_MAX_CANDIDATES];
+        self.orientation = ofc_orientation::default();
+        let Some(choice) = choice else { return };
+        self.slant_rad = choice.slants;
+        self.candidate_count = count(choice.candidates.len());
+        for (slot, candidate) in self.candidates.iter_mut().zip(&choice.candidates) {
+            *slot = (*candidate).into();
+        }
+        (self.slant_source, self.chosen) = match choice.source {
+            SlantSource::Root => (OFC_SLANTS_ROOT, count(choice.chosen)),
+            SlantSource::LeastSquares => (OFC_SLANTS_LEAST_SQUARES, -1),
+            SlantSource::TiltIntegrability => (OFC_SLANTS_TILT_INTEGRABILITY, -1),
+            SlantSource::Pentland => (OFC_SLANTS_PENTLAND, -1),
+            SlantSource::LeeRosenfeld => (OFC_SLANTS_LEE_ROSENFELD, -1),
+            SlantSource::ZhengChellappa => (OFC_SLANTS_ZHENG_CHELLAPPA, -1),
+            SlantSource::Joint => (OFC_SLANTS_JOINT, -1),
         };
-        if let Some(fit) = fit {
-            result.fit = fit.into();
-        }
-        if let Some(choice) = choice {
-            result.slant_rad = choice.slants;
-            result.candidate_count = count(choice.candidates.len());
-            for (slot, candidate) in result.candidates.iter_mut().zip(&choice.candidates) {
-                *slot = (*candidate).into();
-            }
-            (result.slant_source, result.chosen) = match choice.source {
-                SlantSource::Root => (OFC_SLANTS_ROOT, count(choice.chosen)),
-                SlantSource::LeastSquares => (OFC_SLANTS_LEAST_SQUARES, -1),
-                SlantSource::TiltIntegrability => (OFC_SLANTS_TILT_INTEGRABILITY, -1),
-                SlantSource::Pentland => (OFC_SLANTS_PENTLAND, -1),
-                SlantSource::LeeRosenfeld => (OFC_SLANTS_LEE_ROSENFELD, -1),
-                SlantSource::ZhengChellappa => (OFC_SLANTS_ZHENG_CHELLAPPA, -1),
-                SlantSource::Joint => (OFC_SLANTS_JOINT, -1),
-            };
-            result.orientation = choice.orientation.into();
-        }
-        result
+        self.orientation = choice.orientation.into();
     }
 }
 
@@ -396,7 +395,7 @@ pub unsafe extern "C" fn ofc_solve(
             // SAFETY: checked and disjoint.
             found.inliers.mark(view, unsafe { output_slice(inlier_mask, pixels) });
         }
-        out.write(ofc_solution::from(&found));
+        out.place().set(&found);
         Ok(of_outcome(found.outcome))
     };
     of(body())

@@ -38,15 +38,19 @@ pub struct ofc_stream_params {
     /// Where less than this share of the usable pixels fits the model, a frame does not refine it and
     /// OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
     pub smallest_share: f64,
+    /// About how many pixels a frame that refines the model looks at, those that the cold start could not use counting a
+    /// third: every n-th row, at least 16, others from frame to frame. 0 looks at all rows. Default 16,384. The tilts
+    /// are averaged over about n frames.
+    pub refine_pixels: u32,
     /// Must be zero.
-    pub reserved: [u32; 4],
+    pub reserved: [u32; 3],
 }
 
 /// What the last OFC_PASS_REFINE frame said of the model from before it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_stream_drift {
-    /// Share of the usable pixels whose residual the old model accepts.
+    /// Share of the usable pixels, of those looked at, whose residual the old model accepts.
     pub inlier_share: f64,
     /// Angles between the old and the new rows of F; zero where there is no new model.
     pub angle_rad: [f64; 3],
@@ -107,11 +111,11 @@ fn sizes(width: usize, height: usize, sample_size: u32) -> (usize, usize, usize)
 
 impl ofc_stream_params {
     fn check(self) -> Result<Params, ofc_status> {
-        let Self { solve, smallest_share, reserved } = self;
-        if reserved != [0; 4] {
+        let Self { solve, smallest_share, refine_pixels, reserved } = self;
+        if reserved != [0; 3] {
             return Err(OFC_STATUS_RESERVED_NOT_ZERO);
         }
-        let params = Params { solve: solve.check()?, smallest_share };
+        let params = Params { solve: solve.check()?, smallest_share, refine_pixels };
         if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
     }
 }
@@ -156,11 +160,11 @@ unsafe fn opened<'a>(pointer: *mut ofc_stream) -> Result<(Stream<'a>, Extent), o
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_params) -> ofc_status {
     of(Out::new(params).map(|out| {
-        let Params { solve, smallest_share } = Params::default();
+        let Params { solve, smallest_share, refine_pixels } = Params::default();
         let mut defaults = ofc_solve_params::defaults();
         defaults.lmeds.sample_size = solve.lmeds.sample_size;
         defaults.road = OFC_ROAD_PAPER;
-        out.write(ofc_stream_params { solve: defaults, smallest_share, reserved: [0; 4] });
+        out.write(ofc_stream_params { solve: defaults, smallest_share, refine_pixels, reserved: [0; 3] });
         OFC_STATUS_OK
     }))
 }
@@ -192,7 +196,8 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 ///     ofc_status status = ofc_stream_end(stream, &pass);
 ///
 /// A cold start takes the passes over colors and tilts, and where eqs. 25 have several roots that over slants, all of one
-/// frame or of consecutive frames of a scene at rest. Then there is F; every further frame refines it. Medians and fits of
+/// frame or of consecutive frames of a scene at rest. Then there is F; a few rows of every
+/// further frame refine it, and for the others ofc_stream_row() does next to nothing. Medians and fits of
 /// a cold start are those of a stratified sample of the colors. Where the sample holds all usable pixels, the solution is
 /// that of ofc_solve() to the bit, but for the integral of a lone candidate, which is not computed: infinite.
 ///
@@ -349,7 +354,8 @@ pub unsafe extern "C" fn ofc_stream_end(stream: *mut ofc_stream, pass: *mut ofc_
 ///
 /// @param stream    The stream.
 /// @param solution  Output. After frames that refined it: F, its stages and the fit are the last frame's, rank is that of
-///                  the cold start, and candidates have no integral (infinite).
+///                  the cold start, candidates have no integral (infinite), tilts come from the axes alone, and counts
+///                  and census are of the pixels that were looked at.
 /// @return As ofc_solve(), for the cold start; OFC_STATUS_NOT_SOLVED, `solution` untouched, before its last pass;
 ///         OFC_STATUS_NO_STREAM; the status of an invalid argument.
 #[unsafe(no_mangle)]
@@ -366,7 +372,7 @@ pub unsafe extern "C" fn ofc_stream_solution(
         if !state.is_concluded() {
             return Err(OFC_STATUS_NOT_SOLVED);
         }
-        out.write(state.solution().into());
+        out.place().set(state.solution());
         Ok(of_outcome(state.solution().outcome))
     };
     of(body())

@@ -346,7 +346,7 @@ pub struct ofc_color_fit {
 }
 
 impl From<&Fit> for ofc_color_fit {
-    #[inline]
+    #[inline(never)]
     fn from(fit: &Fit) -> Self {
         let Fit {
             robust,

@@ -329,7 +329,7 @@ static void bad_streams(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.slant_fallback, OFC_FALLBACK_TILT_INTEGRABILITY);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.rank_threshold, 1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[0], 1);
-    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[3], 1);
+    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[2], 1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, solve.reserved[0], 1);
 #undef BAD
     for (size_t i = 0; i < n; i++) {
@@ -348,6 +348,7 @@ static void sizes_and_defaults(void **state)
     assert_int_equal(ofc_stream_params_default(&out.params), OFC_STATUS_OK);
     assert_int_equal(out.params.solve.lmeds.sample_size, 2048);
     assert_true(out.params.smallest_share == 0.5);
+    assert_int_equal(out.params.refine_pixels, 16384);
     ofc_solve_params solve;
     memset(&solve, 0, sizeof solve);
     assert_int_equal(ofc_solve_params_default(&solve), OFC_STATUS_OK);

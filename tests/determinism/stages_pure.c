@@ -34,6 +34,7 @@ void digest_constants(void)
     mix_status(ofc_stream_params_default(&stream));
     mix_solve_params(&stream.solve);
     mix_doubles(&stream.smallest_share, 1);
+    mix_integer(stream.refine_pixels);
     for (int32_t width = -1; width < 5000; width += 617)
         for (int32_t height = 1; height < 4000; height += 977) {
             mix_integer(ofc_lmeds_workspace_size(width, height, &lmeds));

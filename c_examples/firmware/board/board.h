@@ -14,7 +14,13 @@ void board_exit(int status);
  * the system timer, or a cycle. */
 uint64_t board_instructions(void);
 
-/* The most bytes of stack that have been in use at once. */
+/* Before a call whose stack is to be measured: paints what is free. */
+void board_stack_paint(void);
+
+/* After it: the bytes of stack it took, below the frame of its caller. */
+uint32_t board_stack_taken(void);
+
+/* The most bytes of stack that have been in use at once, as far as was measured. */
 uint32_t board_stack_peak(void);
 
 #endif

@@ -9,20 +9,36 @@ void start(void)
         *to = *from++;
     for (uint32_t *word = bss_start; word < bss_end; word++)
         *word = 0;
-    /* Up to a little below this function's own frame. */
-    const uint32_t here = 0;
-    const uint32_t *end = (const uint32_t *)((uintptr_t)&here - 256);
-    for (uint32_t *word = stack_bottom; word < end; word++)
-        *word = STACK_PATTERN;
     board_exit(main());
 }
 
-uint32_t board_stack_peak(void)
+/* Where the caller's frame ends, and the most that was in use below the top. */
+static uintptr_t callers;
+static uint32_t peak;
+
+void __attribute__((noinline)) board_stack_paint(void)
+{
+    /* Up to a little below this function's own frame. */
+    callers = (uintptr_t)__builtin_frame_address(0);
+    const uintptr_t end = callers - 128;
+    for (uint32_t *word = stack_bottom; (uintptr_t)word < end; word++)
+        *word = STACK_PATTERN;
+}
+
+uint32_t board_stack_taken(void)
 {
     const uint32_t *word = stack_bottom;
     while (word < stack_top && *word == STACK_PATTERN)
         word++;
-    return (uint32_t)((uintptr_t)stack_top - (uintptr_t)word);
+    const uint32_t used = (uint32_t)((uintptr_t)stack_top - (uintptr_t)word);
+    if (used > peak)
+        peak = used;
+    return (uint32_t)(callers - (uintptr_t)word);
+}
+
+uint32_t board_stack_peak(void)
+{
+    return peak;
 }
 
 void fault(void)

@@ -10,7 +10,7 @@ enum { STACK_PATTERN = 0x5ac7ac7a };
 
 int main(void);
 
-/* Sets up memory as C expects it, paints the stack below the caller, and runs main(). */
+/* Sets up memory as C expects it, and runs main(). */
 void start(void);
 
 /* Of every exception: there is no good one. */

@@ -130,10 +130,27 @@ fn search(
     false
 }
 
-/// The solution that Newton's method reaches, if it is one. The steps are the shortest that solve the linear
-/// equations, so singular derivatives are no obstacle.
+/// The solution that Newton's method reaches, if it is one.
 #[inline(never)]
 fn polish(constraints: &Constraints, start: [f64; 3]) -> Option<SlantRoot> {
+    let (best, best_residual) = newton(constraints, start);
+    let inside = clamp(best);
+    let valid = |slants: [f64; 3], limit: f64| {
+        let residual = constraints.residual(slants);
+        let root = SlantRoot { slants, branch: branch_of(slants, constraints), residual };
+        (residual <= limit).then_some(root)
+    };
+    if best_residual <= ZERO && max_abs(difference(best, inside)) <= OVERHANG {
+        return valid(inside, OVERHANG);
+    }
+    // Newton's method went astray from a coarse leaf, or outside along singular derivatives.
+    valid(descend(constraints, clamp(start)), ZERO)
+}
+
+/// Where Newton's method ends, and its residual. The steps are the shortest that solve the linear equations, so singular
+/// derivatives are no obstacle.
+#[inline(never)]
+fn newton(constraints: &Constraints, start: [f64; 3]) -> ([f64; 3], f64) {
     let (mut best, mut best_residual) = (start, f64::INFINITY);
     let mut slants = start;
     for _ in 0..MAX_STEPS {
@@ -148,17 +165,7 @@ fn polish(constraints: &Constraints, start: [f64; 3]) -> Option<SlantRoot> {
         let [s1, s2, s3] = slants;
         slants = [s1 - d1, s2 - d2, s3 - d3];
     }
-    let inside = clamp(best);
-    let valid = |slants: [f64; 3], limit: f64| {
-        let residual = constraints.residual(slants);
-        let root = SlantRoot { slants, branch: branch_of(slants, constraints), residual };
-        (residual <= limit).then_some(root)
-    };
-    if best_residual <= ZERO && max_abs(difference(best, inside)) <= OVERHANG {
-        return valid(inside, OVERHANG);
-    }
-    // Newton's method went astray from a coarse leaf, or outside along singular derivatives.
-    valid(descend(constraints, clamp(start)), ZERO)
+    (best, best_residual)
 }
 
 /// Adds a root, or lets it stand for one that is the same. When there is no room it is dropped: that many roots are

@@ -1,5 +1,6 @@
 //! The three passes of a cold start.
 
+use super::rows::Rows;
 use super::strata::{Sampled, Slots, Strata};
 use super::{Memory, Pass, State, StreamError, room};
 use crate::cells::{Block, for_each_block_of_rows};
@@ -49,6 +50,7 @@ impl State {
         self.concluded = false;
         lmeds::enough(&self.census, self.width * self.height).map_err(StreamError::Fit)?;
         self.scale = lmeds::reciprocal_power_of_two(self.census.largest);
+        self.rows = Rows::new(self.height, &self.census, self.params.refine_pixels);
         self.drift = None;
         let found = self.search(memory);
         let fit = self.fit(found, memory);
@@ -136,7 +138,7 @@ impl State {
     }
 
     /// The pairs along the last row, which has none below.
-    pub(super) fn last_row_tilts(&mut self, memory: &Memory) {
+    fn last_row_tilts(&mut self, memory: &Memory) {
         self.tilts_of_blocks(None, memory);
     }
 
@@ -145,12 +147,13 @@ impl State {
         self.last_row_tilts(memory);
         self.solution.inlier_count = self.inlier_count;
         self.solution.tilts = self.tilts();
+        self.history = self.differences;
         let goes_on = self.find_candidates(memory);
         self.go_on(goes_on, Pass::Slants);
     }
 
     /// The tilts that the differences, or the caller, have.
-    pub(super) fn tilts(&self) -> Option<Tilts> {
+    fn tilts(&self) -> Option<Tilts> {
         match self.params.solve.tilts {
             TiltEstimator::Given(tilts) => Some(Tilts::alone(tilts)),
             _ => self.differences.tilts(),
@@ -270,30 +273,46 @@ fn multiply(colors: &mut [&mut [f32]; 3], factor: f64) {
     }
 }
 
-/// Keeps a row for the blocks that it makes with the next one: channels apart, NaN where the mask leaves a pixel out.
+/// Keeps a row for the blocks that it makes with the next one: channels apart, red NaN where the mask leaves a pixel out.
 #[inline(never)]
 fn keep(row: &Image, memory: &mut Memory) {
     let width = row.width();
-    row.for_each_window(|window| {
-        for (channel, color) in window.color.iter().enumerate() {
-            let out = memory.values.get_mut(channel * width + window.x..).unwrap_or_default();
-            for (i, (out, &value)) in out.iter_mut().zip(color).take(window.len).enumerate() {
-                *out = if window.masked >> i & 1 == 1 { value } else { f32::NAN };
-            }
+    row.for_each_window(|window| keep_window(width, window, window.masked, memory));
+}
+
+/// The same of one window: red is NaN for all but `bits`.
+#[inline(never)]
+pub(super) fn keep_window(width: usize, window: &Window, bits: u64, memory: &mut Memory) {
+    for (channel, color) in window.color.iter().enumerate() {
+        copy(memory.values.get_mut(channel * width + window.x..).unwrap_or_default(), color, window.len);
+    }
+    let red = memory.values.get_mut(window.x..).unwrap_or_default();
+    for_each_bit(first(window.len) & !bits, |i| {
+        if let Some(out) = red.get_mut(i) {
+            *out = f32::NAN;
         }
     });
 }
 
+/// The first `count` bits.
+const fn first(count: usize) -> u64 {
+    if count < WINDOW { (1 << count) - 1 } else { u64::MAX }
+}
+
+/// Copies `count` values, of as many as there are.
+fn copy(to: &mut [f32], from: &[f32], count: usize) {
+    if let (Some(to), Some(from)) = (to.get_mut(..count), from.get(..count)) {
+        to.copy_from_slice(from);
+    }
+}
+
 /// The pixels that are kept of the row before, from column `x` on.
-fn kept(x: usize, width: usize, memory: &Memory, window: &mut Window) {
+pub(super) fn kept(x: usize, width: usize, memory: &Memory, window: &mut Window) {
     window.x = x;
     window.len = width.saturating_sub(x).min(WINDOW);
-    window.masked = if window.len == WINDOW { u64::MAX } else { (1 << window.len) - 1 };
+    window.masked = first(window.len);
     for (channel, out) in window.color.iter_mut().enumerate() {
-        let from = memory.values.get(channel * width + x..).unwrap_or_default();
-        for (out, &value) in out.iter_mut().take(window.len).zip(from) {
-            *out = value;
-        }
+        copy(out, memory.values.get(channel * width + x..).unwrap_or_default(), window.len);
     }
 }
 

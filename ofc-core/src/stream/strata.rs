@@ -137,24 +137,32 @@ impl Sampled<'_> {
         }
         window.masked |= 1 << column;
     }
+
+    /// Fills the window that begins at `slot`, and goes on to the one after it; whether there was one.
+    // Compiled once, not for every visitor.
+    #[inline(never)]
+    fn next(&self, slot: &mut usize, window: &mut Window) -> bool {
+        window.masked = 0;
+        while *slot < self.len() {
+            let (column, first) = match self.places.get(*slot) {
+                Some(&place) => (usize::from(place & COLUMN), place & FIRST != 0),
+                None => (*slot % WINDOW, (*slot).is_multiple_of(WINDOW)),
+            };
+            if first && window.masked != 0 {
+                return true;
+            }
+            self.put(*slot, window, column);
+            *slot += 1;
+        }
+        window.masked != 0
+    }
 }
 
 impl Pixels for Sampled<'_> {
     fn for_each_window(&self, mut visit: impl FnMut(&Window)) {
-        let mut window = Window::new();
+        let (mut window, mut slot) = (Window::new(), 0);
         window.len = WINDOW;
-        for slot in 0..self.len() {
-            let (column, first) = match self.places.get(slot) {
-                Some(&place) => (usize::from(place & COLUMN), place & FIRST != 0),
-                None => (slot % WINDOW, slot % WINDOW == 0),
-            };
-            if first && window.masked != 0 {
-                visit(&window);
-                window.masked = 0;
-            }
-            self.put(slot, &mut window, column);
-        }
-        if window.masked != 0 {
+        while self.next(&mut slot, &mut window) {
             visit(&window);
         }
     }

@@ -1,20 +1,23 @@
 //! One pass that makes a new model of an old one.
 //!
-//! The inliers of the old model are fitted by least squares, from the sums over them; so are the tilts. Of the slants
+//! Every n-th row is looked at. The inliers of the old model are fitted by least squares, from the sums over them. The
+//! tilts are those of the mean differences along the rows, and between one row that is looked at and the next: in a column
+//! of inliers these add up to the difference between its ends, however far the rows lie apart. As others are looked at in
+//! every frame, the differences of about n frames are averaged. Of the slants
 //! that agree with both those nearest to the old ones are taken. The dispersion grows or shrinks with the deviation of
 //! the inliers' residuals: as it was truncated before, so it is now.
 
-use super::cold::slants_of;
+use super::cold::{keep_window, kept, slants_of};
 use super::{Memory, Pass, State};
 use crate::constrained_slant::{self, Candidates, SlantRoot};
 use crate::ellipsoid::{self, Coefficients};
-use crate::image::{Census, Image, for_each_bit};
+use crate::image::{Census, Image, Window, for_each_bit};
 use crate::inliers::{Band, Inliers};
 use crate::lmeds::{self, MIN_PIXELS, Refit};
 use crate::mat3::{self, Mat3};
 use crate::regression::Moments;
 use crate::solve::{SMALLEST_NOISE_MARGIN, orient};
-use crate::tilt::{Tilts, pentland};
+use crate::tilt::{TiltEstimator, Tilts, pentland};
 use libm::{atan2, sqrt};
 
 /// What a frame says of the model from before it.
@@ -51,30 +54,46 @@ impl State {
         self.inlier_count = 0;
     }
 
-    #[inline(never)]
     pub(super) fn row_refine(&mut self, y: usize, row: &Image, memory: &mut Memory) {
-        self.row_moments(row);
-        self.row_tilts(y, row, memory);
+        if self.rows.hold(y) {
+            self.row_sums(y > self.rows.first(), row, memory);
+        }
     }
 
+    /// The sums of a row that is looked at; `follows` another one, which is kept.
     #[inline(never)]
-    fn row_moments(&mut self, row: &Image) {
-        let inliers = Inliers { norm: Band::EVERYTHING, ..self.solution.inliers };
+    fn row_sums(&mut self, follows: bool, row: &Image, memory: &mut Memory) {
+        let Inliers { usable, residual, norm } = &self.solution.inliers;
+        let scale = self.scale;
+        let (mut above, mut left) = (Window::new(), None);
         row.for_each_window(|window| {
-            inliers.usable.count_window(window, &mut self.census);
+            let fitting = residual.bits(window, usable.count_window(window, &mut self.census));
             let mut sums = Moments::default();
-            for_each_bit(inliers.bits(window), |i| {
-                sums.add(window.pixel(i).map(|c| f64::from(c) * self.scale));
-            });
-            self.moments.merge(&sums);
+            if fitting != 0 {
+                for_each_bit(fitting, |i| {
+                    let [r, g, b] = window.pixel(i);
+                    sums.add([f64::from(r) * scale, f64::from(g) * scale, f64::from(b) * scale]);
+                });
+                self.moments.merge(&sums);
+            }
+            let inliers = norm.bits(window, fitting);
+            self.inlier_count += inliers.count_ones() as usize;
+            let mut inliers_above = 0;
+            if follows && inliers != 0 {
+                kept(window.x, row.width(), memory, &mut above);
+                inliers_above = above.masked & above.bits(|r, _, _| !r.is_nan());
+            }
+            self.differences.add_rows((&above, inliers_above), (window, inliers), &mut left);
+            keep_window(row.width(), window, inliers, memory);
         });
     }
 
     #[inline(never)]
     pub(super) fn end_refine(&mut self, memory: &mut Memory) {
-        self.last_row_tilts(memory);
         let inlier_share = f64::from(self.moments.count) / self.census.usable.max(1) as f64;
         let enough = self.census.usable >= MIN_PIXELS && inlier_share >= self.params.smallest_share;
+        self.history.remember(&self.differences, self.rows.step());
+        self.rows.advance();
         let change = if enough { self.refine(memory.values) } else { None };
         self.drift = Some(Drift { inlier_share, change });
         self.pass = if change.is_some() { Pass::Refine } else { Pass::Colors };
@@ -91,7 +110,10 @@ impl State {
     /// Takes over what follows from C and the tilts, and says by how much the rows of F turned and grew.
     #[inline(never)]
     fn adopt_orientation(&mut self, form: &Coefficients, room: &mut [f32]) -> Option<([f64; 3], [f64; 3])> {
-        let tilts = self.tilts()?;
+        let tilts = match self.params.solve.tilts {
+            TiltEstimator::Given(tilts) => Tilts::alone(tilts),
+            _ => self.history.tilts_along_axes()?,
+        };
         let cosines = cosines(form)?;
         let mut roots = Candidates::new();
         constrained_slant::roots_within(tilts.tilts, cosines, room, &mut roots);

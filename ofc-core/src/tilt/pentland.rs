@@ -26,17 +26,24 @@ impl Mean {
         (from, from_shift): (&Window, usize),
         value: impl Fn(&Window, usize) -> [f64; 3],
     ) {
-        let mut sums = [0.0; 3];
+        let [mut red, mut green, mut blue] = [0.0; 3];
         for_each_bit(bits, |i| {
-            let (to, from) = (value(to, i + to_shift), value(from, i + from_shift));
-            for ((sum, to), from) in sums.iter_mut().zip(to).zip(from) {
-                *sum += to - from;
-            }
+            let ([r, g, b], [r0, g0, b0]) = (value(to, i + to_shift), value(from, i + from_shift));
+            (red, green, blue) = (red + (r - r0), green + (g - g0), blue + (b - b0));
         });
-        for (total, sum) in self.sums.iter_mut().zip(sums) {
+        for (total, sum) in self.sums.iter_mut().zip([red, green, blue]) {
             *total += sum;
         }
         self.count += u64::from(bits.count_ones());
+    }
+
+    /// Adds `scale` times other differences to `share` of these.
+    #[expect(clippy::cast_sign_loss, reason = "a count and a share of it")]
+    fn remember(&mut self, other: &Self, share: f64, scale: f64) {
+        for (sum, other) in self.sums.iter_mut().zip(other.sums) {
+            *sum = *sum * share + other * scale;
+        }
+        self.count = (self.count as f64 * share) as u64 + other.count;
     }
 
     fn mean(&self, channel: usize, distance_reciprocal: f64) -> Option<f64> {
@@ -57,36 +64,81 @@ pub struct Sums {
 impl Sums {
     /// Adds the pairs of one block.
     pub fn add(&mut self, block: &Block) {
-        self.add_of(block, |window, i| window.pixel(i).map(f64::from));
+        self.add_of(block, &color);
     }
 
-    fn add_of(&mut self, block: &Block, value: impl Fn(&Window, usize) -> [f64; 3]) {
+    /// Adds the pairs of inliers along the `lower` of two rows, and those between it and the `upper` one. `left` is the
+    /// pixel left of the window where it is an inlier, and then the window's last one.
+    pub fn add_rows(
+        &mut self,
+        (upper, upper_bits): (&Window, u64),
+        (lower, lower_bits): (&Window, u64),
+        left: &mut Option<[f32; 3]>,
+    ) {
+        if let (Some(left), 1) = (*left, lower_bits & 1) {
+            for ((sum, to), from) in self.east.sums.iter_mut().zip(lower.pixel(0)).zip(left) {
+                *sum += f64::from(to) - f64::from(from);
+            }
+            self.east.count += 1;
+        }
+        *left = (lower_bits >> (WINDOW - 1) == 1).then(|| lower.pixel(WINDOW - 1));
+        let value = &color;
+        self.east.add(lower_bits & (lower_bits >> 1), (lower, 1), (lower, 0), value);
+        self.north.add(upper_bits & lower_bits, (upper, 0), (lower, 0), value);
+    }
+
+    fn add_of(&mut self, block: &Block, value: &impl Fn(&Window, usize) -> [f64; 3]) {
         let (top, bottom) = (&block.top, &block.bottom);
-        self.east.add(block.horizontal(), (top, 1), (top, 0), &value);
-        self.north.add(block.vertical(), (top, 0), (bottom, 0), &value);
-        self.north_east.add(block.rising(), (top, 1), (bottom, 0), &value);
-        self.north_west.add(block.falling(), (top, 0), (bottom, 1), &value);
+        self.east.add(block.horizontal(), (top, 1), (top, 0), value);
+        self.north.add(block.vertical(), (top, 0), (bottom, 0), value);
+        self.north_east.add(block.rising(), (top, 1), (bottom, 0), value);
+        self.north_west.add(block.falling(), (top, 0), (bottom, 1), value);
     }
 
     /// The tilts; `None` when a direction has no pair of inliers, or a channel's mean gradient is zero.
     #[must_use]
     pub fn tilts(&self) -> Option<Tilts> {
-        let mut result = Tilts { tilts: [0.0; 3], gradients: [[0.0; 2]; 3] };
-        for (channel, (tilt, gradient)) in result.tilts.iter_mut().zip(&mut result.gradients).enumerate() {
+        let mut gradients = [[0.0; 2]; 3];
+        for (channel, gradient) in gradients.iter_mut().enumerate() {
             let (e, n) = (self.east.mean(channel, 1.0)?, self.north.mean(channel, 1.0)?);
             let ne = self.north_east.mean(channel, FRAC_1_SQRT_2)?;
             let nw = self.north_west.mean(channel, FRAC_1_SQRT_2)?;
             // Least squares of eq. 20 over the four unit directions, whose normal matrix is twice the identity.
             let ix = 0.5 * (e + FRAC_1_SQRT_2 * (ne - nw));
             let iy = 0.5 * (n + FRAC_1_SQRT_2 * (ne + nw));
-            if !has_direction(ix, iy) {
-                return None;
-            }
-            *tilt = atan2(iy, ix);
             *gradient = [ix, iy];
         }
-        Some(result)
+        of_gradients(gradients)
     }
+
+    /// Adds a frame of which [`Self::add_rows`] saw every `step`-th row, and forgets one in `step` of the frames before.
+    pub fn remember(&mut self, frame: &Self, step: usize) {
+        let reciprocal = 1.0 / step as f64;
+        self.east.remember(&frame.east, 1.0 - reciprocal, 1.0);
+        self.north.remember(&frame.north, 1.0 - reciprocal, reciprocal);
+    }
+
+    /// The tilts along the axes alone; `None` as for [`Self::tilts`].
+    #[must_use]
+    pub fn tilts_along_axes(&self) -> Option<Tilts> {
+        let mut gradients = [[0.0; 2]; 3];
+        for (channel, gradient) in gradients.iter_mut().enumerate() {
+            *gradient = [self.east.mean(channel, 1.0)?, self.north.mean(channel, 1.0)?];
+        }
+        of_gradients(gradients)
+    }
+}
+
+/// The tilts of the channels' mean gradients; `None` where one is zero.
+fn of_gradients(gradients: [[f64; 2]; 3]) -> Option<Tilts> {
+    let mut tilts = [0.0; 3];
+    for (tilt, [ix, iy]) in tilts.iter_mut().zip(gradients) {
+        if !has_direction(ix, iy) {
+            return None;
+        }
+        *tilt = atan2(iy, ix);
+    }
+    Some(Tilts { tilts, gradients })
 }
 
 /// The tilts from differences between neighbouring inliers along the axes and the diagonals.
@@ -94,7 +146,15 @@ impl Sums {
 /// `inliers` gives the bits of a window's inliers. `None` when a direction has no pair of inliers, or a channel's mean
 /// gradient is zero: then it has no tilt.
 pub fn tilts(image: &Image, inliers: impl Fn(&Window) -> u64) -> Option<Tilts> {
-    tilts_of(image, inliers, |window, i| window.pixel(i).map(f64::from))
+    tilts_of(image, inliers, color)
+}
+
+/// A color in double precision.
+#[inline]
+fn color(window: &Window, i: usize) -> [f64; 3] {
+    // Not by map(), which is a call where code is made small.
+    let [r, g, b] = window.pixel(i);
+    [f64::from(r), f64::from(g), f64::from(b)]
 }
 
 /// The same of the picture that has `value` of every window's pixel in its place.
@@ -137,16 +197,7 @@ pub fn tilts_along(image: &Image, inliers: impl Fn(&Window) -> u64, steps: &[[i3
     if parallel {
         return None;
     }
-    let mut result = Tilts { tilts: [0.0; 3], gradients: [[0.0; 2]; 3] };
-    for ((tilt, gradient), [a, b]) in result.tilts.iter_mut().zip(&mut result.gradients).zip(right) {
-        let (ix, iy) = ((yy * a - xy * b) / determinant, (xx * b - xy * a) / determinant);
-        if !has_direction(ix, iy) {
-            return None;
-        }
-        *tilt = atan2(iy, ix);
-        *gradient = [ix, iy];
-    }
-    Some(result)
+    of_gradients(right.map(|[a, b]| [(yy * a - xy * b) / determinant, (xx * b - xy * a) / determinant]))
 }
 
 /// The differences of all pairs of inliers one step apart.
