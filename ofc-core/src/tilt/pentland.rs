@@ -24,7 +24,7 @@ impl Mean {
         bits: u64,
         (to, to_shift): (&Window, usize),
         (from, from_shift): (&Window, usize),
-        value: impl Fn(&Window, usize) -> [f64; 3],
+        value: &impl Fn(&Window, usize) -> [f64; 3],
     ) {
         let [mut red, mut green, mut blue] = [0.0; 3];
         for_each_bit(bits, |i| {
@@ -38,6 +38,7 @@ impl Mean {
     }
 
     /// Adds `scale` times other differences to `share` of these.
+    #[expect(clippy::cast_sign_loss, reason = "counts")]
     fn remember(&mut self, other: &Self, share: f64, scale: f64) {
         for (sum, other) in self.sums.iter_mut().zip(other.sums) {
             *sum = *sum * share + other * scale;
