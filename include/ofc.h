@@ -1015,8 +1015,8 @@ typedef struct ofc_stream_params {
     // OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
     double smallest_share;
     // About how many pixels a frame that refines the model looks at, those that the cold start could not use counting a
-    // third: every n-th row, at least 16, others from frame to frame. 0 looks at all rows. Default 16,384: a QVGA frame
-    // then takes a microcontroller a tenth of the instructions of one that is looked at as a whole.
+    // third: every n-th row, at least 16, others from frame to frame. 0 looks at all rows. Default 16,384. The tilts
+    // are averaged over about n frames.
     uint32_t refine_pixels;
     // Must be zero.
     uint32_t reserved[3];
