@@ -64,6 +64,11 @@ pub struct Face {
 }
 
 impl Face {
+    fn is_there(&self) -> bool {
+        let [x, y, z] = self.normal;
+        x != 0.0 || y != 0.0 || z != 0.0
+    }
+
     fn lit(&self, window: &Window) -> u64 {
         window.bits(|r, g, b| distance(self.normal, [r, g, b]) >= self.least)
     }
@@ -85,7 +90,7 @@ impl Shadows {
     pub fn lit(&self, window: &Window, among: u64) -> u64 {
         let mut lit = among;
         for face in &self.faces {
-            if *face != Face::default() && lit != 0 {
+            if face.is_there() && lit != 0 {
                 lit &= face.lit(window);
             }
         }
@@ -135,8 +140,8 @@ pub fn find(
     workspace: &mut [f32],
 ) -> Option<Shadows> {
     let (room, _) = workspace.as_chunks_mut::<3>();
-    let stride = count.div_ceil(room.len().clamp(1, SAMPLE)).max(1);
-    let colors = room.get_mut(..count / stride)?;
+    let stride = 1 + count.checked_div(room.len().min(SAMPLE))?;
+    let colors = room.get_mut(..count.checked_div(stride)?)?;
     let inliers = Inliers { residual: band, ..Inliers::all(usable) };
     // Outliers come from the front, the others from the back.
     let (mut front, mut back, mut number) = (0, colors.len(), 0_usize);

@@ -207,6 +207,9 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let usable = params.usable(image);
     let mut solution = Solution::unsolved(usable.count(image), usable);
     let fit = lmeds::fit(image, usable, &params.lmeds, workspace).map(|fit| solution.fit = Some(fit));
+    if fit.is_ok() && params.reject_shadows {
+        solution.leave_out_shadows(image, params, workspace);
+    }
     solution.model(image, fit, params, workspace)?;
     if solution.outcome != Outcome::NoTilt {
         return Ok(solution);
@@ -291,9 +294,6 @@ impl Solution {
         params: &Params,
         workspace: &mut [f32],
     ) -> Result<(), FitError> {
-        if fit.is_ok() && params.reject_shadows {
-            self.leave_out_shadows(pixels, params, workspace);
-        }
         let usable = self.inliers.usable;
         let fit = match (fit, &self.fit) {
             (Ok(()), Some(fit)) => fit,

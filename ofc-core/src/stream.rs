@@ -33,7 +33,8 @@ use strata::Strata;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
     /// The pipeline's. `lmeds.sample_size` is how many colors the sample has room for, at least 24, here 2048 by default;
-    /// tilts are Pentland's or given, and without a root slants are refused or fitted by least squares.
+    /// shadows are not looked for, tilts are Pentland's or given, and without a root slants are refused or fitted by least
+    /// squares.
     pub solve: solve::Params,
     /// Where less than this share of the usable pixels has a residual that the model accepts, in [0, 1], a frame does not
     /// refine it: a cold start is needed. Default 0.5, what least median of squares rests on.
@@ -46,7 +47,8 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         let lmeds = lmeds::Params { sample_size: 2048, ..lmeds::Params::default() };
-        let solve = solve::Params { lmeds, road: Road::Paper, ..solve::Params::default() };
+        let solve =
+            solve::Params { lmeds, road: Road::Paper, reject_shadows: false, ..solve::Params::default() };
         Self { solve, smallest_share: 0.5, refine_pixels: 16_384 }
     }
 }
@@ -60,6 +62,7 @@ impl Params {
             // Merged strata leave half of the sample.
             && self.solve.lmeds.sample_size as usize >= 2 * MIN_PIXELS
             && self.solve.road == Road::Paper
+            && !self.solve.reject_shadows
             && matches!(self.solve.tilts, TiltEstimator::Pentland | TiltEstimator::Given(_))
             && matches!(self.solve.fallback, SlantFallback::Refuse | SlantFallback::LeastSquares)
     }

@@ -32,7 +32,7 @@ pub const OFC_PASS_REFINE: i32 = 4;
 #[derive(Clone, Copy)]
 pub struct ofc_stream_params {
     /// As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
-    /// road is OFC_ROAD_PAPER, tilt_estimator OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
+    /// keep_shadows is 1, road OFC_ROAD_PAPER, tilt_estimator OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
     /// OFC_FALLBACK_LEAST_SQUARES.
     pub solve: ofc_solve_params,
     /// Where less than this share of the usable pixels fits the model, a frame does not refine it and
@@ -164,6 +164,7 @@ pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_param
         let mut defaults = ofc_solve_params::defaults();
         defaults.lmeds.sample_size = solve.lmeds.sample_size;
         defaults.road = OFC_ROAD_PAPER;
+        defaults.keep_shadows = 1;
         out.write(ofc_stream_params { solve: defaults, smallest_share, refine_pixels, reserved: [0; 3] });
         OFC_STATUS_OK
     }))

@@ -394,6 +394,19 @@ fn frames_of_the_same_scene_refine_the_model() {
 }
 
 #[test]
+fn warm_frames_look_at_as_many_pixels_as_wanted() {
+    let mut seen = Vec::new();
+    for refine_pixels in [0, 16_384, 1] {
+        let (mut camera, _) = solved(Params { refine_pixels, ..Params::default() });
+        refined(&mut camera, &portrait(101));
+        let census = camera.state.solution().census;
+        seen.push(census.usable + census.masked_out + census.non_finite + census.dark + census.saturated);
+    }
+    // 29,000 usable pixels and a third of the others are more than twice 16,384; never less than 16 rows.
+    assert_eq!(seen, [320 * 240, 320 * 80, 320 * 16]);
+}
+
+#[test]
 fn noise_that_comes_and_goes() {
     let picture = |noise, seed| {
         scene::Scene::new(320, 240, &scene::CLEAN, bust(240.0)).with_noise(noise, seed).quantized()

@@ -12,10 +12,11 @@ use crate::select::{kth_smallest, median_rank};
 use libm::fabs;
 
 /// The fit that follows from the `scaled` z that was found: rejection and the reweighted fit, over the `count` usable ones
-/// of these pixels. It is in `out` unless there is an error.
+/// of these pixels. It is in `out` unless there is an error. Its covariance and the noise of its pixels are there if `ERRORS`,
+/// and zero otherwise.
 #[inline(never)]
 #[expect(clippy::too_many_arguments, reason = "what a search leaves, and what it was given")]
-pub(crate) fn judge(
+pub(crate) fn judge<const ERRORS: bool>(
     pixels: &impl Pixels,
     usable: Usable,
     count: usize,
@@ -32,7 +33,7 @@ pub(crate) fn judge(
     let inliers = Inliers { residual: rejection.band, ..Inliers::all(usable) };
     let moments = moments(pixels, &inliers, scale);
     rejection.refit(pixels, &inliers, &moments, scale, count, params, out).ok_or_else(degenerate)?;
-    if let Some(fit) = out {
+    if let (true, Some(fit)) = (ERRORS, out) {
         covariance(&moments, scale, &robust, fit);
         fit.pixel_noise = fit.pixel_noise.max(noise(pixels, &inliers, &fit.z(), workspace));
     }

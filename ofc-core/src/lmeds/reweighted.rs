@@ -59,7 +59,7 @@ pub(super) fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
 /// The expected squares and products of the errors of a fit made of these sums of colors times `scale`. Its inliers are those
 /// of another `form`, which pulls it: as much as the two differ may be left of that form's error.
 #[inline(never)]
-pub(crate) fn covariance(moments: &Moments, scale: f64, form: &Coefficients, fit: &mut Fit) {
+pub(super) fn covariance(moments: &Moments, scale: f64, form: &Coefficients, fit: &mut Fit) {
     let Some(solved) = moments.solve() else { return };
     let variance = fit.residual_deviation * fit.residual_deviation;
     fit.covariance = moments.error_covariance(&solved, variance, fit.noise_deviation * scale, scale * scale);

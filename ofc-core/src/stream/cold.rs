@@ -70,7 +70,7 @@ impl State {
             Method::LeastSquares => lmeds::least_squares(&pixels, usable, self.scale),
         };
         let fit = &mut self.solution.fit;
-        lmeds::judge(&pixels, usable, count, self.scale, scaled, params, workspace, fit)
+        lmeds::judge::<false>(&pixels, usable, count, self.scale, scaled, params, workspace, fit)
     }
 
     /// What follows from the fit.

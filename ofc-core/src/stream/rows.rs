@@ -29,7 +29,8 @@ impl Rows {
         // Multiples of the golden ratio, modulo 1, of a step: frames one after the other lie far apart.
         const GOLDEN: u32 = 0x9e37_79b9;
         self.frames = self.frames.wrapping_add(1);
-        self.first = ((u64::from(self.frames.wrapping_mul(GOLDEN)) * self.step as u64) >> u32::BITS) as usize;
+        let fraction = u64::from(self.frames.wrapping_mul(GOLDEN));
+        self.first = ((fraction * self.step as u64) >> u32::BITS) as usize;
     }
 
     /// Whether this row is one of them.

@@ -146,7 +146,7 @@ impl Sampled<'_> {
         while *slot < self.len() {
             let (column, first) = match self.places.get(*slot) {
                 Some(&place) => (usize::from(place & COLUMN), place & FIRST != 0),
-                None => (*slot % WINDOW, (*slot).is_multiple_of(WINDOW)),
+                None => (*slot % WINDOW, slot.is_multiple_of(WINDOW)),
             };
             if first && window.masked != 0 {
                 return true;

@@ -13,7 +13,7 @@ use crate::constrained_slant::{self, Candidates, SlantRoot};
 use crate::ellipsoid::{self, Coefficients};
 use crate::image::{Census, Image, Window, for_each_bit};
 use crate::inliers::{Band, Inliers};
-use crate::lmeds::{self, MIN_PIXELS, Refit};
+use crate::lmeds::{MIN_PIXELS, Refit};
 use crate::mat3::{self, Mat3};
 use crate::regression::Moments;
 use crate::solve::{SMALLEST_NOISE_MARGIN, orient};
@@ -162,16 +162,8 @@ impl State {
     }
 
     /// Takes the fit of the sums over, with the bands that follow from it, and says by how much the dispersion grew.
-    fn adopt_fit(&mut self) -> Option<f64> {
-        let form = self.solution.fit.as_ref()?.band.form;
-        let grown = self.adopt_refit()?;
-        lmeds::covariance(&self.moments, self.scale, &form, self.solution.fit.as_mut()?);
-        Some(grown)
-    }
-
-    /// The same but for the covariance.
     #[inline(never)]
-    fn adopt_refit(&mut self) -> Option<f64> {
+    fn adopt_fit(&mut self) -> Option<f64> {
         let refit = self.refit()?;
         let rejection = self.params.solve.lmeds.rejection;
         let fit = self.solution.fit.as_mut()?;
@@ -191,7 +183,6 @@ impl State {
         fit.residual_deviation = refit.residual_deviation;
         fit.color_deviations = refit.color_deviations;
         fit.noise_deviation = refit.noise_deviation;
-        fit.pixel_noise *= dispersion;
         fit.degenerate_noise_deviation = refit.degenerate_noise_deviation;
         fit.usable = self.census.usable;
         fit.inliers = refit.count as usize;

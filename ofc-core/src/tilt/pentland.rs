@@ -24,7 +24,7 @@ impl Mean {
         bits: u64,
         (to, to_shift): (&Window, usize),
         (from, from_shift): (&Window, usize),
-        value: impl Fn(&Window, usize) -> [f64; 3],
+        value: &impl Fn(&Window, usize) -> [f64; 3],
     ) {
         let [mut red, mut green, mut blue] = [0.0; 3];
         for_each_bit(bits, |i| {
@@ -38,7 +38,7 @@ impl Mean {
     }
 
     /// Adds `scale` times other differences to `share` of these.
-    #[expect(clippy::cast_sign_loss, reason = "a count and a share of it")]
+    #[expect(clippy::cast_sign_loss, reason = "counts")]
     fn remember(&mut self, other: &Self, share: f64, scale: f64) {
         for (sum, other) in self.sums.iter_mut().zip(other.sums) {
             *sum = *sum * share + other * scale;
@@ -82,9 +82,8 @@ impl Sums {
             self.east.count += 1;
         }
         *left = (lower_bits >> (WINDOW - 1) == 1).then(|| lower.pixel(WINDOW - 1));
-        let value = &color;
-        self.east.add(lower_bits & (lower_bits >> 1), (lower, 1), (lower, 0), value);
-        self.north.add(upper_bits & lower_bits, (upper, 0), (lower, 0), value);
+        self.east.add(lower_bits & lower_bits >> 1, (lower, 1), (lower, 0), &color);
+        self.north.add(upper_bits & lower_bits, (upper, 0), (lower, 0), &color);
     }
 
     fn add_of(&mut self, block: &Block, value: &impl Fn(&Window, usize) -> [f64; 3]) {
