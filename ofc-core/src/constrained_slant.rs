@@ -28,9 +28,9 @@ pub use least_squares::{NearestSlants, least_squares, without_roots};
 pub use roots::{roots, roots_within};
 pub use waiting::ROOM;
 
+use crate::angle::sincos;
 use crate::mat3::{self, Mat3};
 use core::f64::consts::FRAC_PI_2;
-use libm::sincos;
 
 /// Room for solutions: twice as many as there can be isolated ones.
 pub const MAX_CANDIDATES: usize = 8;

@@ -446,19 +446,20 @@ impl Usable {
 
     /// Adds the pixels of one window to a census, and returns the bits of the usable ones.
     pub fn count_window(&self, window: &Window, census: &mut Census) -> u64 {
-        let exposed = self.exposed(window);
-        let usable = self.shadows.lit(window, exposed);
+        let usable = self.bits(window);
         census.usable += usable.count_ones() as usize;
-        census.shaded += (exposed & !usable).count_ones() as usize;
         census.masked_out += window.len - window.masked.count_ones() as usize;
-        for_each_bit(window.masked & !exposed, |i| {
+        for_each_bit(window.masked & !usable, |i| {
             let [r, g, b] = window.pixel(i);
+            let brightest = r.max(g).max(b);
             if !(r.is_finite() && g.is_finite() && b.is_finite()) {
                 census.non_finite += 1;
-            } else if r.max(g).max(b) <= 0.0 {
+            } else if brightest <= 0.0 {
                 census.dark += 1;
-            } else {
+            } else if brightest >= self.saturation {
                 census.saturated += 1;
+            } else {
+                census.shaded += 1;
             }
         });
         let mut largest = census.largest.to_bits();

@@ -8,6 +8,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod angle;
 pub mod cells;
 pub mod channel_maxima;
 pub mod check;

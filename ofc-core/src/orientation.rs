@@ -3,8 +3,8 @@
 //! # Reference
 //! Sections 1.1 and 3.4 (steps 5 and 6), eqs. 7, 8 and 19.
 
+use crate::angle::sincos;
 use crate::mat3::{self, Mat3};
-use libm::sincos;
 
 /// Singular values of F below this share of the largest are zero, unless the caller says otherwise.
 pub const RANK_THRESHOLD: f64 = 1e-3;

@@ -26,10 +26,11 @@ pub(crate) mod polish;
 pub(crate) mod sample;
 pub mod tilts_given;
 
+use crate::angle::sincos;
 use crate::image::{Image, Window};
 use crate::integrability::{self, Integrability};
 use crate::mat3::{self, Mat3};
-use libm::{acos, atan2, sincos, sqrt};
+use libm::{acos, atan2, sqrt};
 use sample::for_each_cell;
 
 /// Why there is no transformation.

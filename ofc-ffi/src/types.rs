@@ -25,6 +25,7 @@ plain!(
     ofc_census,
     ofc_estimate,
     ofc_inliers,
+    ofc_shadow_face,
     ofc_color_fit,
     ofc_location,
     ofc_ellipsoid,
@@ -238,6 +239,17 @@ impl From<ofc_estimate> for Estimate {
     }
 }
 
+/// A face of the cone of colors that three lights make: where one of them is shaded, colors lie in a plane through black.
+/// Those near it, or beyond, with normal . rho below `least`, are no inliers.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct ofc_shadow_face {
+    /// Of unit length, inward.
+    pub normal: [f32; 3],
+    /// In pixel values.
+    pub least: f32,
+}
+
 /// The pixels that obey the model, as a test of a pixel's color rho alone: finite, not black, below the saturation
 /// level, and rho^T C rho within both bands. It can be applied to another frame under the same lights.
 #[repr(C)]
@@ -257,11 +269,8 @@ pub struct ofc_inliers {
     pub norm_low: f64,
     /// Largest accepted rho^T C rho.
     pub norm_high: f64,
-    /// Unit normals of up to three faces of the cone of colors, a row each; zero where there is none. Colors near a face, or
-    /// beyond it, are in the shadow of one light.
-    pub shadow_normal: [f64; 9],
-    /// The smallest accepted normal . rho of each.
-    pub shadow_least: [f64; 3],
+    /// Up to three faces of the cone of colors; those that are not there are zero.
+    pub shadow_faces: [ofc_shadow_face; 3],
 }
 
 impl From<Inliers> for ofc_inliers {
@@ -275,8 +284,7 @@ impl From<Inliers> for ofc_inliers {
             norm_form: norm.form,
             norm_low: norm.low,
             norm_high: norm.high,
-            shadow_normal: flat(&shadows.faces.map(|face| face.normal.map(f64::from))),
-            shadow_least: shadows.faces.map(|face| f64::from(face.least)),
+            shadow_faces: shadows.faces.map(|Face { normal, least }| ofc_shadow_face { normal, least }),
         }
     }
 }
@@ -292,15 +300,10 @@ impl ofc_inliers {
             norm_form,
             norm_low,
             norm_high,
-            shadow_normal,
-            shadow_least,
+            shadow_faces,
         } = self;
-        let mut shadows = Shadows::NONE;
-        for ((face, normal), least) in
-            shadows.faces.iter_mut().zip(shadow_normal.as_chunks::<3>().0).zip(shadow_least)
-        {
-            *face = Face { normal: normal.map(|x| x as f32), least: least as f32 };
-        }
+        let shadows =
+            Shadows { faces: shadow_faces.map(|ofc_shadow_face { normal, least }| Face { normal, least }) };
         Inliers {
             usable: Usable { saturation: saturation as f32, shadows },
             residual: Band { form: residual_form, low: residual_low, high: residual_high },

@@ -1,7 +1,8 @@
 //! The fixed-point curves of eqs. 25.
 
 use super::Constraints;
-use libm::{atan, sincos, sqrt};
+use crate::angle::sincos;
+use libm::{atan, sqrt};
 
 /// An argument of the square root this little below zero is a zero that rounding has moved.
 const ROUNDING: f64 = 1e-15;

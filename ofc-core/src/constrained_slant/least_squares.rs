@@ -1,9 +1,10 @@
 //! The slants that satisfy eqs. 24 best when nothing satisfies them exactly.
 
 use super::{Constraints, clamp, inverse, roots};
+use crate::angle::sincos;
 use crate::mat3::{self, Mat3};
 use core::f64::consts::FRAC_PI_2;
-use libm::{sincos, sqrt};
+use libm::sqrt;
 
 /// Slants that minimise the sum of the squared residuals of eqs. 24.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,11 +14,12 @@
 use super::polish::{polish, rotation};
 use super::sample::{CELL, Sample};
 use super::{Found, OrthogonalError, Problem};
+use crate::angle::sincos;
 use crate::image::{Image, Window};
 use crate::mat3::{self, Mat3};
 use crate::rng::Rng;
 use core::f64::consts::TAU;
-use libm::{exp, log, pow, sincos, sqrt};
+use libm::{exp, log, pow, sqrt};
 
 /// Evaluations and cells are never more than this.
 pub const MAX_EVALUATIONS: u32 = 10_000_000;

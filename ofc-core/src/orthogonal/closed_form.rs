@@ -24,10 +24,11 @@
 
 use super::sample::for_each_cell;
 use super::{Found, OrthogonalError, Problem, unit};
+use crate::angle::sincos;
 use crate::image::{Image, Window, for_each_bit};
 use crate::integrability::SMALLEST_N3;
 use crate::mat3::{self, Mat3};
-use libm::{atan2, sincos, sqrt};
+use libm::{atan2, sqrt};
 
 /// Times that the polish may compute (15) over the picture, unless the caller says otherwise.
 pub const POLISH_EVALUATIONS: u32 = 60;

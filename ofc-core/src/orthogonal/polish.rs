@@ -1,7 +1,8 @@
 //! A bounded local search among rotations of a frame: Newton steps from differences, for as long as the value falls.
 
+use crate::angle::sincos;
 use crate::mat3::{self, IDENTITY, Mat3};
-use libm::{sincos, sqrt};
+use libm::sqrt;
 
 /// Values of the objective that one round needs: six along the axes, three for the mixed derivatives, one at the end.
 const ROUND: u32 = 10;

@@ -5,9 +5,10 @@
 //! the light source coordinate system", Artificial Intelligence 26, 1985.
 
 use super::{Estimate, Reach, moments, solve_increasing};
+use crate::angle::sincos;
 use crate::image::{Image, Window};
 use core::f64::consts::PI;
-use libm::{sincos, sqrt};
+use libm::sqrt;
 
 /// Beyond this slant eq. 23 is lost in rounding.
 const LARGEST: f64 = PI - 0.01;

@@ -11,9 +11,10 @@
 //! Q. Zheng, R. Chellappa, "Estimation of illuminant direction, albedo, and shape from shading", PAMI 13, 1991.
 
 use super::{Estimate, Reach, moments, solve_increasing};
+use crate::angle::sincos;
 use crate::image::{Image, Window};
 use core::f64::consts::{FRAC_PI_2, PI};
-use libm::{acos, sincos, sqrt};
+use libm::{acos, sqrt};
 
 /// Intervals of Simpson's rule: f3 to 1e-6.
 const INTERVALS: u32 = 32;
