@@ -488,6 +488,15 @@ typedef struct ofc_location {
     double dispersion;
 } ofc_location;
 
+// A face of the cone of colors that three lights make: where one of them is shaded, colors lie in a plane through black.
+// Those near it, or beyond, with normal . rho below `least`, are no inliers.
+typedef struct ofc_shadow_face {
+    // Of unit length, inward.
+    float normal[3];
+    // In pixel values.
+    float least;
+} ofc_shadow_face;
+
 // The pixels that obey the model, as a test of a pixel's color rho alone: finite, not black, below the saturation
 // level, and rho^T C rho within both bands. It can be applied to another frame under the same lights.
 typedef struct ofc_inliers {
@@ -505,11 +514,8 @@ typedef struct ofc_inliers {
     double norm_low;
     // Largest accepted rho^T C rho.
     double norm_high;
-    // Unit normals of up to three faces of the cone of colors, a row each; zero where there is none. Colors near a face, or
-    // beyond it, are in the shadow of one light.
-    double shadow_normal[9];
-    // The smallest accepted normal . rho of each.
-    double shadow_least[3];
+    // Up to three faces of the cone of colors; those that are not there are zero.
+    struct ofc_shadow_face shadow_faces[3];
 } ofc_inliers;
 
 // What C says of the color-orientation matrix F before its orthogonal transformation is known (eq. 18). Matrices are
@@ -1028,7 +1034,7 @@ typedef struct ofc_solve_params {
 // What a stream does. Set by ofc_stream_params_default().
 typedef struct ofc_stream_params {
     // As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
-    // road is OFC_ROAD_PAPER, tilt_estimator OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
+    // keep_shadows is 1, road OFC_ROAD_PAPER, tilt_estimator OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
     // OFC_FALLBACK_LEAST_SQUARES.
     struct ofc_solve_params solve;
     // Where less than this share of the usable pixels fits the model, a frame does not refine it and

@@ -83,7 +83,7 @@ static void bad_parameters(void **state)
     struct {
         ofc_solve_params params;
         ofc_status expected;
-    } bad[32];
+    } bad[34];
     size_t n = 0;
 #define BAD(status, field, value)                                                                                      \
     (bad[n].params = stages.params, bad[n].params.field = (value), bad[n++].expected = (status))
@@ -113,7 +113,9 @@ static void bad_parameters(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, slant_fallback, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[0], 1);
-    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[4], 1);
+    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[3], 1);
+    BAD(OFC_STATUS_INVALID_PARAMETER, keep_shadows, 2);
+    BAD(OFC_STATUS_INVALID_PARAMETER, keep_shadows, -1);
     BAD(OFC_STATUS_INVALID_PARAMETER, road, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, road, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[0], 1);
@@ -177,7 +179,8 @@ static void answers(void **state)
     }
     assert_int_equal(out.solution.inlier_count, inliers);
     const ofc_census *census = &out.solution.census;
-    assert_int_equal(census->usable + census->masked_out + census->dark + census->saturated + census->non_finite,
+    assert_int_equal(census->usable + census->masked_out + census->dark + census->saturated + census->non_finite +
+                         census->shaded,
                      PIXELS);
     /* A mask is a wish, and the answer does not depend on it. */
     static ofc_solution again;

@@ -316,7 +316,7 @@ static void bad_streams(void **state)
     struct {
         ofc_stream_params params;
         ofc_status expected;
-    } bad[11];
+    } bad[12];
     size_t n = 0;
 #define BAD(status, field, value)                                                                                      \
     (bad[n].params = params, bad[n].params.field = (value), bad[n++].expected = (status))
@@ -325,6 +325,7 @@ static void bad_streams(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, smallest_share, NAN);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.lmeds.sample_size, 23);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.road, OFC_ROAD_JOINT);
+    BAD(OFC_STATUS_INVALID_PARAMETER, solve.keep_shadows, 0);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.tilt_estimator, OFC_TILT_CHOJNACKI);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.slant_fallback, OFC_FALLBACK_TILT_INTEGRABILITY);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.rank_threshold, 1);
@@ -354,6 +355,7 @@ static void sizes_and_defaults(void **state)
     assert_int_equal(ofc_solve_params_default(&solve), OFC_STATUS_OK);
     solve.lmeds.sample_size = 2048;
     solve.road = OFC_ROAD_PAPER; /* the only one that rows can take so far */
+    solve.keep_shadows = 1;
     assert_memory_equal(&solve, &out.params.solve, sizeof solve);
 
     assert_true(OFC_STREAM_SIZE(320, 240) <= 48 << 10);

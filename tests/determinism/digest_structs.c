@@ -14,6 +14,7 @@ void mix_census(const ofc_census *census)
     INTEGER(census->dark);
     INTEGER(census->saturated);
     INTEGER(census->non_finite);
+    INTEGER(census->shaded);
     mix_floats(&census->largest, 1);
 }
 
@@ -77,6 +78,10 @@ void mix_inliers(const ofc_inliers *inliers)
     ARRAY(inliers->norm_form);
     NUMBER(inliers->norm_low);
     NUMBER(inliers->norm_high);
+    for (int i = 0; i < 3; i++) {
+        mix_floats(inliers->shadow_faces[i].normal, 3);
+        mix_floats(&inliers->shadow_faces[i].least, 1);
+    }
 }
 
 void mix_ellipsoid(const ofc_ellipsoid *ellipsoid)
