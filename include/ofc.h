@@ -451,7 +451,7 @@ typedef struct ofc_color_fit {
     // Noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values.
     double noise_deviation;
     // The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single
-    // pixels.
+    // pixels. In a stream only what rounding makes.
     double pixel_noise;
     // Noise in each channel with which colors that do not determine C could look like these. solve refuses where it
     // is below 1.5 times noise_deviation; C is biased by about the inverse square of that ratio.
@@ -1837,7 +1837,8 @@ size_t ofc_stream_size(int32_t width,
 // frame or of consecutive frames of a scene at rest. Then there is F; a few rows of every
 // further frame refine it, and for the others ofc_stream_row() does next to nothing. Medians and fits of
 // a cold start are those of a stratified sample of the colors. Where the sample holds all usable pixels, the solution is
-// that of ofc_solve() to the bit, but for the integral of a lone candidate, which is not computed: infinite.
+// that of ofc_solve() to the bit, but for what is not computed: the integral of a lone candidate (infinite) and
+// fit.covariance (zero).
 //
 // Stack, for this call and every other that takes a stream: below 4 KiB.
 //

@@ -7,8 +7,8 @@
 //! integral (15) of all of them at once, and ends with F. Then normals and inliers of any row can be had, and one pass
 //! over a few rows of a later frame refines the model.
 //!
-//! Where the sample holds every usable pixel the result is that of [`solve`](crate::solve::solve), bit for bit (but the
-//! integral of a lone candidate, which is not computed: infinite).
+//! Where the sample holds every usable pixel the result is that of [`solve`](crate::solve::solve), bit for bit, but for what
+//! is not computed: the integral of a lone candidate (infinite) and the errors of the fit (its covariance is zero).
 
 mod cold;
 mod output;

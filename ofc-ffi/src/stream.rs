@@ -200,7 +200,8 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 /// frame or of consecutive frames of a scene at rest. Then there is F; a few rows of every
 /// further frame refine it, and for the others ofc_stream_row() does next to nothing. Medians and fits of
 /// a cold start are those of a stratified sample of the colors. Where the sample holds all usable pixels, the solution is
-/// that of ofc_solve() to the bit, but for the integral of a lone candidate, which is not computed: infinite.
+/// that of ofc_solve() to the bit, but for what is not computed: the integral of a lone candidate (infinite) and
+/// fit.covariance (zero).
 ///
 /// Stack, for this call and every other that takes a stream: below 4 KiB.
 ///

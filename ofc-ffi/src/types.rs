@@ -337,7 +337,7 @@ pub struct ofc_color_fit {
     /// Noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values.
     pub noise_deviation: f64,
     /// The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single
-    /// pixels.
+    /// pixels. In a stream only what rounding makes.
     pub pixel_noise: f64,
     /// Noise in each channel with which colors that do not determine C could look like these. solve refuses where it
     /// is below 1.5 times noise_deviation; C is biased by about the inverse square of that ratio.
