@@ -23,7 +23,7 @@ use libm::{atan2, hypot};
 
 /// The noise that would make a degenerate scene look like this one must be so many times the noise there is. Degenerate
 /// scenes (cylinders, planes, cones, ramps, mixtures of colors, with and without noise) come to 0.2-1.1, photographs
-/// that give good normals to 1.9-6.7; at 1.5 nearly half of a coefficient of C can be bias.
+/// that give good normals to 1.19-6.7; at the limit a coefficient of C can be mostly bias.
 pub(crate) const SMALLEST_NOISE_MARGIN: f64 = 1.15;
 
 /// How the orthogonal transformation that the regression leaves open is found.

@@ -160,25 +160,22 @@ impl<'w> Cells<'w> {
         numbers: &'w mut [f32],
         rest: &mut [f32],
     ) -> Self {
-        let (mut count, mut whole) = (0.0, [0.0; 2]);
+        let (mut count, mut columns, mut rows) = (0, 0, 0);
         let (width, height) = (image.width() / SIDE, image.height() / SIDE);
         let mut windows = [const { Window::new() }; SIDE];
         let (cells, _) = numbers.as_chunks_mut::<NUMBERS>();
         let (residuals, _) = rest.as_chunks_mut::<COVARIANCE>();
         for y in 0..height {
-            let y0 = y * SIDE;
             for from in (0..width * SIDE).step_by(WINDOW) {
                 let mut bits = [0; SIDE];
                 for ((row, window), bits) in windows.iter_mut().enumerate().zip(&mut bits) {
                     image.read(from, y * SIDE + row, window);
                     *bits = inliers.bits(window);
                     let exposed = inliers.usable.exposed(window);
-                    for_each_bit(exposed, |i| {
-                        let [x, y] = &mut whole;
-                        count += 1.0;
-                        *x += (from + i) as f64;
-                        *y -= (y0 + row) as f64;
-                    });
+                    let bits = u64::from(exposed.count_ones());
+                    count += bits;
+                    columns += bits * from as u64 + sum_of_places(exposed);
+                    rows += bits * (y * SIDE + row) as u64;
                 }
                 let first = y * width + from / SIDE;
                 let last = (y + 1) * width;
@@ -189,7 +186,8 @@ impl<'w> Cells<'w> {
                 }
             }
         }
-        let whole = whole.map(|sum| if count > 0.0 { sum / count } else { 0.0 });
+        let mean = |sum: u64| if count > 0 { sum as f64 / count as f64 } else { 0.0 };
+        let whole = [mean(columns), -mean(rows)];
         Self { numbers, width, height, side: SIDE, whole }
     }
 
@@ -281,6 +279,20 @@ impl<'w> Cells<'w> {
         (self.width, self.height, self.side) = (width, height, 2 * self.side);
         true
     }
+}
+
+/// The sum of the numbers of the bits that are set.
+fn sum_of_places(bits: u64) -> u64 {
+    /// Bits of whose numbers the first, second, ... binary digit is one.
+    const DIGITS: [u64; 6] = [
+        0xaaaa_aaaa_aaaa_aaaa,
+        0xcccc_cccc_cccc_cccc,
+        0xf0f0_f0f0_f0f0_f0f0,
+        0xff00_ff00_ff00_ff00,
+        0xffff_0000_ffff_0000,
+        0xffff_ffff_0000_0000,
+    ];
+    DIGITS.iter().enumerate().map(|(digit, mask)| u64::from((bits & mask).count_ones()) << digit).sum()
 }
 
 /// One of the smallest cells, `from` the given pixel of its four rows' windows.
