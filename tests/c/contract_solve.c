@@ -217,6 +217,11 @@ static void roads(void **state)
     assert_int_equal(stages.solution.slant_source, OFC_SLANTS_ROOT);
     assert_true(stages.solution.confidence.evidence == OFC_EVIDENCE_TILTS_ALONE);
     assert_true(stages.solution.confidence.error_rad == 0);
+    /* The border of the ball is in the shadow of one light or another: left out, unless it is to be kept. */
+    assert_true(joint.census.shaded > 0 && joint.inliers.shadow_faces[0].least > 0);
+    assert_true(stages.solution.census.shaded == 0 && stages.solution.inliers.shadow_faces[0].least == 0);
+    assert_int_equal(joint.census.usable + joint.census.shaded, stages.solution.census.usable);
+    params.keep_shadows = 1;
     params.tilt_estimator = OFC_TILT_GIVEN;
     memcpy(params.tilt_rad, stages.solution.tilts.tilt_rad, sizeof params.tilt_rad);
     assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &joint), OFC_STATUS_OK);
