@@ -90,7 +90,7 @@ json "$out/table1_tiff/table1.json" 'r["noise"] == 0 and r["inliers"] > 30000'
 # A map of 16 bits, in units of its own: without them the surface is a needle. A flat one has no rank, and an end.
 python3 tests/dome_png.py "$out/dome.png" 1
 expect 0 "$table1" "$out/dome.png" --pixel-pitch 200 --out "$out/table1_png"
-json "$out/table1_png/table1.json" 'r["inliers"] > 8000 and r["median_error_deg"]["OFC (correct tilts)"] < 4'
+json "$out/table1_png/table1.json" 'r["inliers"] > 7000 and r["median_error_deg"]["OFC (correct tilts)"] < 4'
 expect 1 "$table1" "$out/dome.png" --out "$out/table1_png"
 python3 tests/dome_png.py "$out/flat.png" 0
 expect 1 timeout 60 "$table1" "$out/flat.png" --out "$out/table1_flat"
