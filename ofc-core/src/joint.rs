@@ -18,16 +18,15 @@
 //! Sections 2.3-2.4 (eqs. 13-15) and 3.2 (eqs. 20-21), which this combines.
 
 mod cells;
-mod dome;
 mod form;
 mod integrable;
 mod outward;
 mod search;
 
-use crate::image::Image;
+use crate::image::{Image, WINDOW, Window};
 use crate::inliers::Inliers;
 use crate::mat3::{self, Mat3};
-use cells::Cells;
+use cells::{Cells, Grid, MeanPosition};
 use heapless::Vec;
 use integrable::Integrable;
 use libm::sqrt;
@@ -86,6 +85,55 @@ pub const fn workspace_len(width: usize, height: usize) -> usize {
     cells::count(width, height).saturating_mul(cells::NUMBERS + integrable::NUMBERS)
 }
 
+/// Sums over the rows of a picture, four by four: all that its orientation is found from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Survey {
+    grid: Grid,
+    whole: MeanPosition,
+}
+
+/// Rows that are summed at a time.
+pub(crate) const STRIP: usize = cells::SIDE;
+
+impl Survey {
+    /// Over a picture of this size, of cells as small as `room` numbers allow while rows come and `later` ones after that;
+    /// `None` where there is nothing to sum. `numbers` are the room.
+    pub fn begin(
+        width: usize,
+        height: usize,
+        room: usize,
+        later: usize,
+        numbers: &mut [f32],
+    ) -> Option<Self> {
+        let grid = Grid::finest(width, height, room, later)?;
+        grid.clear(numbers);
+        Some(Self { grid, whole: MeanPosition::default() })
+    }
+
+    /// The pixels of a window that the surface is seen in, shaded ones among them.
+    pub fn see(&mut self, x: usize, y: usize, exposed: u64) {
+        self.whole.add(x, y, exposed);
+    }
+
+    /// Four rows that begin at `y`, a multiple of four: a window of each, one below the other, and their inliers.
+    pub fn add(
+        &self,
+        y: usize,
+        windows: &[Window; STRIP],
+        inliers: [u64; STRIP],
+        root: &Mat3,
+        numbers: &mut [f32],
+    ) {
+        self.grid.add(y, windows, inliers, root, numbers);
+    }
+
+    /// As [`estimate`], from the sums in the first of these numbers.
+    pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
+        let (cells, rest) = Cells::of(&self.grid, numbers)?;
+        of_cells(cells, rest, self.whole.position())
+    }
+}
+
 /// The transformation of the normals `root` rho of the inliers; `None` where they are too few or too scattered to say
 /// anything.
 ///
@@ -93,12 +141,32 @@ pub const fn workspace_len(width: usize, height: usize) -> usize {
 /// `root` in (pixel value)^-1.
 ///
 /// # Scratch
-/// [`workspace_len`] `f32`; what they hold before does not matter. One pass over the picture, and one over a quarter of it.
+/// [`workspace_len`] `f32`; what they hold before does not matter. One pass over the picture.
 pub fn estimate(image: &Image, inliers: &Inliers, root: &Mat3, workspace: &mut [f32]) -> Option<Joint> {
-    let workspace = workspace.get_mut(..workspace_len(image.width(), image.height()))?;
-    let (store, rest) = workspace.split_at_mut_checked(cells::len(image.width(), image.height()))?;
-    let mut cells = Cells::of(image, inliers, root, store, rest);
-    let outward = Outward::of(&cells, cells.whole)?;
+    let (width, height) = (image.width(), image.height());
+    let len = workspace_len(width, height);
+    let workspace = workspace.get_mut(..len)?;
+    let mut survey = Survey::begin(width, height, len, len, workspace)?;
+    let mut windows = [const { Window::new() }; STRIP];
+    for y in (0..height).step_by(STRIP) {
+        for x in (0..width).step_by(WINDOW) {
+            let mut bits = [0; STRIP];
+            for ((y, window), bits) in (y..height).zip(&mut windows).zip(&mut bits) {
+                image.read(x, y, window);
+                survey.see(x, y, inliers.usable.exposed(window));
+                *bits = inliers.bits(window);
+            }
+            if y + STRIP <= height {
+                survey.add(y, &windows, bits, root, workspace);
+            }
+        }
+    }
+    survey.end(workspace)
+}
+
+/// The transformation, from cells and what lies behind them.
+fn of_cells(mut cells: Cells, rest: &mut [f32], whole: [f64; 2]) -> Option<Joint> {
+    let outward = Outward::of(&cells, rest, whole)?;
     let noise = cells.noise(rest)?;
 
     let prior = |rows: &Mat3| outward.cost(rows);
@@ -141,7 +209,7 @@ pub fn estimate(image: &Image, inliers: &Inliers, root: &Mat3, workspace: &mut [
         _ => Evidence::Both,
     };
     let rows = outward.facing(best.rows);
-    let (rows, dome) = dome::convex(image, inliers.selector(), root, rows, outward.middle);
+    let (rows, dome) = outward.convex(rows);
     Some(Joint { rows, covariance, evidence, dome, second_best: best.second })
 }
 

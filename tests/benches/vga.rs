@@ -10,7 +10,7 @@ use ofc_core::normals::{Length, compute};
 use ofc_core::render::{self, Canvas, Lights, Outputs, render};
 use ofc_core::rng::Rng;
 use ofc_core::segment;
-use ofc_core::solve::{Outcome, Params, Solution, solve, workspace_len};
+use ofc_core::solve::{Outcome, Params, Road, Solution, solve, workspace_len};
 use ofc_tests::depth_maps::{TABLE_1_COLORS, bust, table_1_directions, terrain};
 use ofc_tests::scene::{self, CLEAN, OTHER, cap, moved};
 use ofc_tests::scenes::{Encoded, Layout, Scene, ellipsoid, three_lights};
@@ -31,7 +31,12 @@ fn scene(sample: Sample) -> Encoded {
 }
 
 fn answer(encoded: &Encoded, workspace: &mut [f32]) -> Solution {
-    let solution = solve(&black_box(encoded).image(), &Params::default(), workspace).expect("enough pixels");
+    answer_by(Road::Joint, encoded, workspace)
+}
+
+fn answer_by(road: Road, encoded: &Encoded, workspace: &mut [f32]) -> Solution {
+    let params = Params { road, ..Params::default() };
+    let solution = solve(&black_box(encoded).image(), &params, workspace).expect("enough pixels");
     assert_eq!(solution.outcome, Outcome::Solved);
     solution
 }
@@ -40,11 +45,12 @@ fn workspace() -> Vec<f32> {
     vec![0.0; workspace_len(PIXELS, Params::default().lmeds.sample_size)]
 }
 
-/// The whole pipeline with default parameters.
-#[divan::bench(args = [Sample::U8, Sample::F32])]
-fn solve_vga(bencher: Bencher, sample: Sample) {
+/// The whole pipeline with default parameters, and on the paper's road, for what the other one adds: a quarter at most.
+#[divan::bench(args = [Road::Joint, Road::Paper], consts = [false, true])]
+fn solve_vga<const FLOATS: bool>(bencher: Bencher, road: Road) {
+    let sample = if FLOATS { Sample::F32 } else { Sample::U8 };
     let (encoded, mut workspace) = (scene(sample), workspace());
-    bencher.bench_local(|| answer(&encoded, &mut workspace));
+    bencher.bench_local(|| answer_by(road, &encoded, &mut workspace));
 }
 
 /// A normal for every inlier; the count is of all pixels of the picture.

@@ -1,33 +1,34 @@
 //! Moments of N over small squares of pixels, and how two by two of them make the next size.
 
-use crate::image::{Image, WINDOW, Window, for_each_bit};
-use crate::inliers::Inliers;
+use crate::image::{Window, for_each_bit};
 use crate::mat3::{self, Mat3};
 use crate::select::{kth_smallest, median_rank};
 
-/// Pixels along the side of the smallest cells.
+/// Pixels along the side of the smallest squares.
 pub(super) const SIDE: usize = 4;
 
 /// Numbers of a cell: see [`Moments`].
 pub(super) const NUMBERS: usize = 15;
 
-/// Numbers of the covariance of a cell's pixels about their plane.
-const COVARIANCE: usize = 6;
+/// Numbers of the residuals of a cell's smallest squares: how many they are, and the sum of their covariances.
+const RESIDUALS: usize = 7;
 
-/// A cell's residuals count for the noise if this many pixels are inliers, of 16: three are spent on the plane.
-const SMALLEST_COUNT: f32 = 12.0;
+/// Numbers of their gradients: how many, and the sum.
+const GRADIENTS: usize = 7;
+
+/// Numbers of a cell while its sums are taken.
+pub(super) const SUMS: usize = NUMBERS + RESIDUALS + GRADIENTS;
+
+/// A smallest square has a gradient if this many of its 16 pixels are inliers, and residuals if that many: three are spent on
+/// the plane.
+const SMALLEST_COUNTS: [f64; 2] = [10.0, 12.0];
 
 /// Cells whose residuals are above this many times the median are creases and edges rather than noise.
 const CREASE: f32 = 4.0;
 
-/// How many of the smallest cells a picture has.
+/// How many of the smallest squares a picture has.
 pub(super) const fn count(width: usize, height: usize) -> usize {
     (width / SIDE).saturating_mul(height / SIDE)
-}
-
-/// How many numbers all of them are.
-pub(super) const fn len(width: usize, height: usize) -> usize {
-    count(width, height).saturating_mul(NUMBERS)
 }
 
 /// Sums over the inliers of a square, x right and y up from its middle.
@@ -141,89 +142,250 @@ impl Moments {
     }
 }
 
-/// A picture as squares of equal size, from its top left corner; pixels that do not fill a square are left out.
+/// How a picture is cut into cells: squares of `side` pixels, a multiple of [`SIDE`], from its top left corner. The last ones
+/// may reach beyond it; rows and columns that do not fill a square of [`SIDE`] are left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Grid {
+    pub width: usize,
+    pub height: usize,
+    pub side: usize,
+}
+
+impl Grid {
+    /// The smallest squares for which `room` numbers are enough while their sums are taken, and `later` ones after
+    /// that; `None` where there is nothing to cut.
+    pub fn finest(width: usize, height: usize, room: usize, later: usize) -> Option<Self> {
+        let (columns, rows) = (width / SIDE, height / SIDE);
+        let most = (room / SUMS).min(later / (NUMBERS + super::integrable::NUMBERS));
+        if columns == 0 || rows == 0 || most == 0 {
+            return None;
+        }
+        let mut times = 1;
+        while columns.div_ceil(times) * rows.div_ceil(times) > most {
+            times += 1;
+        }
+        Some(Self { width: columns.div_ceil(times), height: rows.div_ceil(times), side: times * SIDE })
+    }
+
+    const fn count(&self) -> usize {
+        self.width * self.height
+    }
+
+    /// The numbers of the cells, and the sums that are only taken over the smallest ones: residuals and gradients.
+    fn split<'w>(&self, numbers: &'w mut [f32]) -> Option<Room<'w>> {
+        let (cells, rest) = numbers.split_at_mut_checked(self.count() * NUMBERS)?;
+        let (residuals, rest) = rest.split_at_mut_checked(self.count() * RESIDUALS)?;
+        let (gradients, _) = rest.split_at_mut_checked(self.count() * GRADIENTS)?;
+        Some(Room {
+            cells: cells.as_chunks_mut().0,
+            residuals: residuals.as_chunks_mut().0,
+            gradients: gradients.as_chunks_mut().0,
+        })
+    }
+
+    /// Before the first strip.
+    pub fn clear(&self, numbers: &mut [f32]) {
+        numbers.iter_mut().take(self.count() * SUMS).for_each(|number| *number = 0.0);
+    }
+
+    /// Adds the pixels of four windows, the first of whose rows is `y`; of these N = `root` rho.
+    pub fn add(
+        &self,
+        y: usize,
+        windows: &[Window; SIDE],
+        bits: [u64; SIDE],
+        root: &Mat3,
+        numbers: &mut [f32],
+    ) {
+        if bits == [0; SIDE] {
+            return;
+        }
+        let ([first, ..], Some(mut room)) = (windows, self.split(numbers)) else { return };
+        for i in 0..first.len / SIDE {
+            let from = i * SIDE;
+            let nibbles = bits.map(|bits| bits >> from & ((1 << SIDE) - 1));
+            if nibbles != [0; SIDE] {
+                let at = [first.x + from, y];
+                let index = at[1] / self.side * self.width + at[0] / self.side;
+                room.add(index, self.from_middle(at), &Small::of(windows, nibbles, from, root));
+            }
+        }
+    }
+
+    /// Where the middle of the smallest square at this pixel lies from that of its cell, x right and y up.
+    fn from_middle(&self, at: [usize; 2]) -> [f64; 2] {
+        let [x, y] = at.map(|at| (at % self.side) as f64 - 0.5 * (self.side - SIDE) as f64);
+        [x, -y]
+    }
+}
+
+/// What [`Grid::split`] makes of the room.
+struct Room<'w> {
+    cells: &'w mut [[f32; NUMBERS]],
+    residuals: &'w mut [[f32; RESIDUALS]],
+    gradients: &'w mut [[f32; GRADIENTS]],
+}
+
+impl Room<'_> {
+    /// Adds a smallest square to the cell that it lies in, its middle at `from_middle`.
+    fn add(&mut self, index: usize, from_middle: [f64; 2], small: &Small) {
+        let [dx, dy] = from_middle;
+        if let Some(cell) = self.cells.get_mut(index) {
+            let mut sums = Moments::load(cell);
+            sums.add(&small.sums, dx, dy);
+            sums.store(cell);
+        }
+        if let (Some(terms), Some(out)) = (small.residual, self.residuals.get_mut(index)) {
+            accumulate(out, terms);
+        }
+        if let (Some(terms), Some(out)) = (small.gradient, self.gradients.get_mut(index)) {
+            accumulate(out, terms);
+        }
+    }
+}
+
+/// Adds 1 and `terms`.
+fn accumulate<const N: usize>(out: &mut [f32; N], terms: [f64; 6]) {
+    for (out, term) in out.iter_mut().zip([1.0].into_iter().chain(terms)) {
+        *out = (f64::from(*out) + term) as f32;
+    }
+}
+
+/// One of the smallest squares.
+struct Small {
+    sums: Moments,
+    /// The covariance of the pixels about their plane, the upper triangle row by row.
+    residual: Option<[f64; 6]>,
+    /// `N_x` and `N_y`, times the count.
+    gradient: Option<[f64; 6]>,
+}
+
+impl Small {
+    /// From the given pixel of its four rows' windows.
+    fn of(windows: &[Window; SIDE], nibbles: [u64; SIDE], from: usize, root: &Mat3) -> Self {
+        const HALF: f64 = 0.5 * (SIDE as f64 - 1.0);
+        let mut sums = Moments::default();
+        let mut squares = [0.0; 6];
+        for ((row, window), bits) in windows.iter().enumerate().zip(nibbles) {
+            let y = HALF - row as f64;
+            for_each_bit(bits, |i| {
+                let n = mat3::apply(root, window.pixel(from + i).map(f64::from));
+                sums.add_pixel(i as f64 - HALF, y, n);
+                let [a, b, c] = n;
+                for (sum, term) in squares.iter_mut().zip([a * a, a * b, a * c, b * b, b * c, c * c]) {
+                    *sum += term;
+                }
+            });
+        }
+        let mut small = Self { sums, residual: None, gradient: None };
+        let count = sums.count();
+        if count >= SMALLEST_COUNTS[0]
+            && let Some(plane) = sums.plane()
+        {
+            let [[a, b, c], [d, e, f]] = plane.gradient;
+            small.gradient = Some([a, b, c, d, e, f].map(|slope| count * slope));
+            if count >= SMALLEST_COUNTS[1] {
+                small.residual = Some(residual(&sums, &plane, squares));
+            }
+        }
+        small
+    }
+}
+
+/// The covariance of pixels, of whose N these are the sums of squares, about their plane.
+fn residual(sums: &Moments, plane: &Plane, squares: [f64; 6]) -> [f64; 6] {
+    let [n, x, y, ..] = sums.position;
+    let at = |values: &[f64; 3], i: usize| values.get(i).copied().unwrap_or(0.0);
+    let explained = |i: usize, j: usize| {
+        let [gx, gy] = &plane.gradient;
+        let (sx, sy) = (
+            at(&sums.along_x, j) - x / n * at(&sums.normal, j),
+            at(&sums.along_y, j) - y / n * at(&sums.normal, j),
+        );
+        at(&plane.middle, i) * at(&sums.normal, j) + at(gx, i) * sx + at(gy, i) * sy
+    };
+    let (mut residual, pairs) = (squares, [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]);
+    for (entry, (i, j)) in residual.iter_mut().zip(pairs) {
+        *entry = (*entry - explained(i, j)) / (n - 3.0);
+    }
+    residual
+}
+
+/// The mean position of pixels.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct MeanPosition {
+    count: u64,
+    columns: u64,
+    rows: u64,
+}
+
+impl MeanPosition {
+    /// Adds pixels of a window.
+    pub fn add(&mut self, x: usize, y: usize, bits: u64) {
+        let count = u64::from(bits.count_ones());
+        self.count += count;
+        self.columns += count * x as u64 + sum_of_places(bits);
+        self.rows += count * y as u64;
+    }
+
+    /// In pixels, x right and y up from the top left pixel.
+    pub fn position(&self) -> [f64; 2] {
+        let mean = |sum: u64| if self.count > 0 { sum as f64 / self.count as f64 } else { 0.0 };
+        [mean(self.columns), -mean(self.rows)]
+    }
+}
+
+/// Cells whose sums are complete.
 pub(super) struct Cells<'w> {
     numbers: &'w mut [f32],
     width: usize,
     height: usize,
     side: usize,
-    /// The mean position of the whole surface in pixels, x right and y up from the top left pixel.
-    pub whole: [f64; 2],
 }
 
 impl<'w> Cells<'w> {
-    /// The smallest cells. `rest` receives the covariance of each one's residuals.
-    pub fn of(
-        image: &Image,
-        inliers: &Inliers,
-        root: &Mat3,
-        numbers: &'w mut [f32],
-        rest: &mut [f32],
-    ) -> Self {
-        let (mut count, mut columns, mut rows) = (0, 0, 0);
-        let (width, height) = (image.width() / SIDE, image.height() / SIDE);
-        let mut windows = [const { Window::new() }; SIDE];
-        let (cells, _) = numbers.as_chunks_mut::<NUMBERS>();
-        let (residuals, _) = rest.as_chunks_mut::<COVARIANCE>();
-        for y in 0..height {
-            for from in (0..width * SIDE).step_by(WINDOW) {
-                let mut bits = [0; SIDE];
-                for ((row, window), bits) in windows.iter_mut().enumerate().zip(&mut bits) {
-                    image.read(from, y * SIDE + row, window);
-                    *bits = inliers.bits(window);
-                    let exposed = inliers.usable.exposed(window);
-                    let bits = u64::from(exposed.count_ones());
-                    count += bits;
-                    columns += bits * from as u64 + sum_of_places(exposed);
-                    rows += bits * (y * SIDE + row) as u64;
-                }
-                let first = y * width + from / SIDE;
-                let last = (y + 1) * width;
-                let out = cells.get_mut(first..last).unwrap_or_default().iter_mut();
-                let residuals = residuals.get_mut(first..last).unwrap_or_default();
-                for (i, (cell, residual)) in out.zip(residuals).take(WINDOW / SIDE).enumerate() {
-                    cell_of(&windows, bits, i * SIDE, root, cell, residual);
-                }
-            }
-        }
-        let mean = |sum: u64| if count > 0 { sum as f64 / count as f64 } else { 0.0 };
-        let whole = [mean(columns), -mean(rows)];
-        Self { numbers, width, height, side: SIDE, whole }
+    /// The cells of a grid, and what lies behind them: residuals, gradients and scratch.
+    pub fn of(grid: &Grid, numbers: &'w mut [f32]) -> Option<(Self, &'w mut [f32])> {
+        let (numbers, rest) = numbers.split_at_mut_checked(grid.count() * NUMBERS)?;
+        let Grid { width, height, side } = *grid;
+        Some((Self { numbers, width, height, side }, rest))
     }
 
-    /// The covariance of a pixel's N, from the residuals that [`Cells::of`] left in `rest`; `None` without a cell.
+    /// The sum of gradients over the smallest squares of a cell, each times its inliers, from what lies behind the cells.
+    pub fn gradient(&self, x: usize, y: usize, rest: &[f32]) -> [[f64; 3]; 2] {
+        let gradients = rest.get(self.width * self.height * RESIDUALS..).unwrap_or_default();
+        let (gradients, _) = gradients.as_chunks::<GRADIENTS>();
+        let [_, a, b, c, d, e, f] =
+            gradients.get(y * self.width + x).copied().unwrap_or_default().map(f64::from);
+        [[a, b, c], [d, e, f]]
+    }
+
+    /// The covariance of a pixel's N, from the residuals behind the cells, which are lost; `None` without any.
     pub fn noise(&self, rest: &mut [f32]) -> Option<Mat3> {
         let n = self.width * self.height;
-        let (residuals, scratch) = rest.split_at_mut_checked(n * COVARIANCE)?;
-        let (residuals, _) = residuals.as_chunks::<COVARIANCE>();
-        let mut used = 0;
-        for ([a, _, _, d, _, f], slot) in residuals.iter().zip(scratch.iter_mut()) {
-            // What is not a cell has a negative variance.
-            if *a >= 0.0 {
-                *slot = a + d + f;
-                used += 1;
-            } else {
-                *slot = f32::INFINITY;
-            }
-        }
+        let (residuals, scratch) = rest.split_at_mut_checked(n * RESIDUALS)?;
+        let (residuals, _) = residuals.as_chunks::<RESIDUALS>();
         let scratch = scratch.get_mut(..n)?;
+        let mut used = 0;
+        let mean = |[count, a, _, _, d, _, f]: [f32; RESIDUALS]| (a + d + f) / count;
+        for (residual, slot) in residuals.iter().zip(scratch.iter_mut()) {
+            let [count, ..] = *residual;
+            used += usize::from(count > 0.0);
+            *slot = if count > 0.0 { mean(*residual) } else { f32::INFINITY };
+        }
         let median = kth_smallest(scratch, median_rank(used))?;
-        let mut sums = [0.0_f64; COVARIANCE];
-        let mut count = 0.0;
+        let mut sums = [0.0_f64; RESIDUALS];
         for residual in residuals {
-            let [a, _, _, d, _, f] = residual;
-            if *a >= 0.0 && a + d + f <= CREASE * median {
+            let [count, ..] = *residual;
+            if count > 0.0 && mean(*residual) <= CREASE * median {
                 for (sum, &value) in sums.iter_mut().zip(residual) {
                     *sum += f64::from(value);
                 }
-                count += 1.0;
             }
         }
-        if count == 0.0 {
-            return None;
-        }
-        let [a, b, c, d, e, f] = sums.map(|sum| sum / count);
-        Some([[a, b, c], [b, d, e], [c, e, f]])
+        let [count, rest @ ..] = sums;
+        let [a, b, c, d, e, f] = rest.map(|sum| sum / count);
+        (count > 0.0).then_some([[a, b, c], [b, d, e], [c, e, f]])
     }
 
     /// Cells in a row, and rows.
@@ -293,50 +455,4 @@ fn sum_of_places(bits: u64) -> u64 {
         0xffff_ffff_0000_0000,
     ];
     DIGITS.iter().enumerate().map(|(digit, mask)| u64::from((bits & mask).count_ones()) << digit).sum()
-}
-
-/// One of the smallest cells, `from` the given pixel of its four rows' windows.
-fn cell_of(
-    windows: &[Window; SIDE],
-    bits: [u64; SIDE],
-    from: usize,
-    root: &Mat3,
-    cell: &mut [f32; NUMBERS],
-    residual: &mut [f32; COVARIANCE],
-) {
-    const HALF: f64 = 0.5 * (SIDE as f64 - 1.0);
-    let mut sums = Moments::default();
-    let mut squares = [0.0; COVARIANCE];
-    for ((row, window), bits) in windows.iter().enumerate().zip(bits) {
-        let y = HALF - row as f64;
-        for_each_bit(bits >> from & ((1 << SIDE) - 1), |i| {
-            let n = mat3::apply(root, window.pixel(from + i).map(f64::from));
-            sums.add_pixel(i as f64 - HALF, y, n);
-            let [a, b, c] = n;
-            for (sum, term) in squares.iter_mut().zip([a * a, a * b, a * c, b * b, b * c, c * c]) {
-                *sum += term;
-            }
-        });
-    }
-    sums.store(cell);
-    *residual = [-1.0; COVARIANCE];
-    let count = sums.count();
-    if count < f64::from(SMALLEST_COUNT) {
-        return;
-    }
-    let Some(plane) = sums.plane() else { return };
-    let [n, x, y, ..] = sums.position;
-    let explained = |i: usize, j: usize| {
-        let at = |values: &[f64; 3], i: usize| values.get(i).copied().unwrap_or(0.0);
-        let [gx, gy] = &plane.gradient;
-        let (sx, sy) = (
-            at(&sums.along_x, j) - x / n * at(&sums.normal, j),
-            at(&sums.along_y, j) - y / n * at(&sums.normal, j),
-        );
-        at(&plane.middle, i) * at(&sums.normal, j) + at(gx, i) * sx + at(gy, i) * sy
-    };
-    let pairs = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
-    for ((slot, square), (i, j)) in residual.iter_mut().zip(squares).zip(pairs) {
-        *slot = ((square - explained(i, j)) / (count - 3.0)) as f32;
-    }
 }

@@ -90,9 +90,8 @@ impl Record {
 
     /// The noise of N x `N_x` for a variance of 1: `[N]x C [N]x^T`.
     fn cross_noise(&self, noise: &Mat3) -> Mat3 {
-        let [a, b, c] = self.middle;
-        let cross = [[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]];
-        mat3::multiply(&mat3::multiply(&cross, noise), &mat3::transpose(&cross))
+        let crossed = noise.map(|row| mat3::cross(self.middle, row));
+        mat3::transpose(&crossed).map(|column| mat3::cross(self.middle, column))
     }
 
     fn s(&self, rows: &Mat3) -> f64 {
@@ -105,12 +104,11 @@ impl Record {
         mat3::dot(self.middle, mat3::apply(noise, self.middle)) * (xx + yy)
     }
 
-    fn variance_at(&self, noise: &Mat3, rows: &Mat3) -> f64 {
-        let c = self.cross_noise(noise);
-        let [r1, r2, _] = *rows;
+    fn variance_at(&self, noise: &Mat3, [r1, r2, _]: &Mat3) -> f64 {
         let [xx, xy, yy] = self.variance;
-        let (c1, c2) = (mat3::apply(&c, r1), mat3::apply(&c, r2));
-        xx * mat3::dot(r1, c1) + 2.0 * xy * mat3::dot(r1, c2) + yy * mat3::dot(r2, c2)
+        let (a, b) = (mat3::cross(*r1, self.middle), mat3::cross(*r2, self.middle));
+        let (c, d) = (mat3::apply(noise, a), mat3::apply(noise, b));
+        xx * mat3::dot(a, c) + 2.0 * xy * mat3::dot(a, d) + yy * mat3::dot(b, d)
     }
 }
 

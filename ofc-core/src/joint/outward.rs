@@ -8,21 +8,21 @@
 //! Where a part of the surface is shaded the rest does not face the camera as a whole: n3 then falls with the distance from
 //! the middle of all of the surface, by its curvature.
 
-use super::cells::{Cells, Moments, Plane, SIDE};
+use super::cells::{Cells, Moments};
 use crate::mat3::{self, Mat3};
 use libm::sqrt;
 
 /// The picture is cut into so many parts along each side.
 pub(super) const PARTS: usize = 5;
 
-/// Cells with fewer inliers than this, of 16, have no gradient of their own.
-const SMALLEST_COUNT: f64 = 10.0;
-
 /// Parts are not independent: neighbours bulge together.
 const NEIGHBOURS: f64 = 1.5;
 
 /// Weights that are tried, of one kind of slopes against the other.
 const WEIGHTS: usize = 11;
+
+/// Parts whose normals are further from the camera than this (about 84 degrees) say nothing about slopes.
+const SMALLEST_N3: f64 = 0.1;
 
 /// Slopes of N over x and y, and the variance of their components.
 #[derive(Clone, Copy, Debug)]
@@ -80,15 +80,15 @@ impl Slopes {
 }
 
 /// All that positions say.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Outward {
     slopes: Slopes,
     /// The sum of N.
     normal: [f64; 3],
-    /// The mean position in pixels, x right and y up from the top left pixel.
-    pub middle: [f64; 2],
-    /// That position from the middle of the whole surface, of which parts may be shaded.
+    /// The mean position of the inliers from the middle of the whole surface, of which parts may be shaded.
     from_middle: [f64; 2],
+    /// The sums over each part, about that mean position.
+    parts: [Moments; PARTS * PARTS],
 }
 
 /// The parts of a picture: where the inliers lie, cut into [`PARTS`] by [`PARTS`].
@@ -133,13 +133,13 @@ impl Parts {
 }
 
 impl Outward {
-    /// From the smallest cells; `None` where there are too few.
-    pub fn of(cells: &Cells, whole: [f64; 2]) -> Option<Self> {
-        debug_assert!(cells.side() == SIDE);
+    /// From cells and what lies behind them, where the mean position of the whole surface is `whole`; `None` where there
+    /// are too few.
+    pub fn of(cells: &Cells, rest: &[f32], whole: [f64; 2]) -> Option<Self> {
         let parts = Parts::around(cells)?;
         let [x0, y0] = parts.middle();
         let mut moments = [Moments::default(); PARTS * PARTS];
-        let mut gradients = [([[0.0; 3]; 2], 0.0); PARTS * PARTS];
+        let mut gradients = [[[0.0; 3]; 2]; PARTS * PARTS];
         let [width, height] = cells.size();
         for y in 0..height {
             for x in 0..width {
@@ -150,21 +150,18 @@ impl Outward {
                 if let Some(sums) = moments.get_mut(part) {
                     sums.add(&cell, right - x0, up - y0);
                 }
-                if cell.count() >= SMALLEST_COUNT
-                    && let Some(Plane { gradient, .. }) = cell.plane()
-                    && let Some((sums, weight)) = gradients.get_mut(part)
-                {
+                if let Some(sums) = gradients.get_mut(part) {
+                    let gradient = cells.gradient(x, y, rest);
                     for (sum, value) in sums.as_flattened_mut().iter_mut().zip(gradient.as_flattened()) {
-                        *sum += cell.count() * value;
+                        *sum += value;
                     }
-                    *weight += cell.count();
                 }
             }
         }
         let total = all_but(&moments, PARTS * PARTS);
         let pair = |left_out: usize| {
             let regression = all_but(&moments, left_out).plane()?.gradient;
-            Some([normalized(regression), normalized(mean_but(&gradients, left_out)?)])
+            Some([normalized(regression), normalized(sum_but(&gradients, left_out))])
         };
         let mut left_out = [None; PARTS * PARTS];
         for (i, (slot, part)) in left_out.iter_mut().zip(&moments).enumerate() {
@@ -184,9 +181,13 @@ impl Outward {
         }
         let slopes = slopes?;
         let [n, x, y, ..] = total.position;
-        let middle = [x0 + x / n, y0 + y / n];
-        let ([mx, my], [wx, wy]) = (middle, whole);
-        Some(Self { slopes, normal: total.normal, middle, from_middle: [mx - wx, my - wy] })
+        let ([x, y], [wx, wy]) = ([x / n, y / n], whole);
+        for part in &mut moments {
+            let sums = *part;
+            *part = Moments::default();
+            part.add(&sums, -x, -y);
+        }
+        Some(Self { slopes, normal: total.normal, from_middle: [x0 + x - wx, y0 + y - wy], parts: moments })
     }
 
     /// The negative log likelihood of `rows`.
@@ -198,6 +199,23 @@ impl Outward {
     /// `rows` with the sign of r3 that lets the surface face the camera.
     pub fn facing(&self, [r1, r2, r3]: Mat3) -> Mat3 {
         [r1, r2, if mat3::dot(r3, self.normal) < 0.0 { mat3::scale(r3, -1.0) } else { r3 }]
+    }
+
+    /// `rows` or their twin, whichever makes of the surface a dome rather than a hollow: the sum over its parts of
+    /// `(x n1 + y n2) / n3` is positive. And that sum over the sum of its absolute terms, from 0 to 1.
+    pub fn convex(&self, rows: Mat3) -> (Mat3, f64) {
+        let [r1, r2, r3] = rows;
+        let (mut sum, mut absolute) = (0.0, 0.0);
+        for part in &self.parts {
+            let n3 = mat3::dot(r3, part.normal) / part.count();
+            if n3 > SMALLEST_N3 {
+                let outward = (mat3::dot(r1, part.along_x) + mat3::dot(r2, part.along_y)) / n3;
+                sum += outward;
+                absolute += outward.abs();
+            }
+        }
+        let dome = if absolute > 0.0 { sum / absolute } else { 0.0 };
+        if dome < 0.0 { ([mat3::scale(r1, -1.0), mat3::scale(r2, -1.0), r3], -dome) } else { (rows, dome) }
     }
 }
 
@@ -212,15 +230,13 @@ fn all_but(parts: &[Moments], left_out: usize) -> Moments {
     total
 }
 
-/// The mean over all parts but one.
-fn mean_but(parts: &[([[f64; 3]; 2], f64)], left_out: usize) -> Option<[[f64; 3]; 2]> {
-    let (mut mean, mut weights) = ([[0.0; 3]; 2], 0.0);
-    for (_, (sums, weight)) in parts.iter().enumerate().filter(|(i, _)| *i != left_out) {
-        for (entry, sum) in mean.as_flattened_mut().iter_mut().zip(sums.as_flattened()) {
+/// The same of gradients.
+fn sum_but(parts: &[[[f64; 3]; 2]], left_out: usize) -> [[f64; 3]; 2] {
+    let mut total = [[0.0; 3]; 2];
+    for (_, sums) in parts.iter().enumerate().filter(|(i, _)| *i != left_out) {
+        for (entry, sum) in total.as_flattened_mut().iter_mut().zip(sums.as_flattened()) {
             *entry += sum;
         }
-        weights += weight;
     }
-    mean.as_flattened_mut().iter_mut().for_each(|entry| *entry /= weights);
-    (weights > 0.0).then_some(mean)
+    total
 }
