@@ -73,7 +73,8 @@
 #define OFC_STREAM_SIZE(width, height) OFC_STREAM_SIZE_FOR(width, height, 2048)
 #define OFC_STREAM_SIZE_FOR(width, height, sample_size)                                                       \
     ((4103 + OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) +                 \
-      OFC_SIZE_OF_LARGER((size_t)5184, OFC_SIZE_OF_LARGER((size_t)(width) * 12,                               \
+      OFC_SIZE_OF_LARGER((size_t)5184, OFC_SIZE_OF_LARGER((size_t)(width) * 36 +                              \
+          OFC_SIZE_OF_SMALLER((size_t)(width) / 4 * ((size_t)(height) / 4), (size_t)192) * 116,               \
           OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) * 20))) / 8 * 8)
 #define OFC_SIZE_OF_LARGER(a, b) ((a) > (b) ? (a) : (b))
 #define OFC_SIZE_OF_SMALLER(a, b) ((a) < (b) ? (a) : (b))
@@ -346,6 +347,12 @@
 // F is there, and the frame refines it.
 #define OFC_PASS_REFINE 4
 
+// A cold start on OFC_ROAD_JOINT: how normals point outward; where the sample has room for all pixels also F.
+#define OFC_PASS_OUTWARD 5
+
+// A cold start on OFC_ROAD_JOINT: integrability, and F.
+#define OFC_PASS_INTEGRABILITY 6
+
 // Least median of squares, the paper's.
 #define OFC_FIT_LEAST_MEDIAN 0
 
@@ -451,10 +458,10 @@ typedef struct ofc_color_fit {
     // Noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values.
     double noise_deviation;
     // The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single
-    // pixels. In a stream only what rounding makes.
+    // pixels. In a stream without the feature `full-streams` only what rounding makes.
     double pixel_noise;
     // Noise in each channel with which colors that do not determine C could look like these. solve refuses where it
-    // is below 1.5 times noise_deviation; C is biased by about the inverse square of that ratio.
+    // is below 1.15 times noise_deviation; C is biased by about the inverse square of that ratio.
     double degenerate_noise_deviation;
     // Pixels within residual_form's band.
     int32_t inlier_count;
@@ -1034,8 +1041,9 @@ typedef struct ofc_solve_params {
 // What a stream does. Set by ofc_stream_params_default().
 typedef struct ofc_stream_params {
     // As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
-    // keep_shadows is 1, road OFC_ROAD_PAPER, tilt_estimator OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
-    // OFC_FALLBACK_LEAST_SQUARES.
+    // tilt_estimator is OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
+    // OFC_FALLBACK_LEAST_SQUARES. A library built without the feature `full-streams`, for small memories, knows
+    // OFC_ROAD_PAPER with keep_shadows alone, and these are then the defaults.
     struct ofc_solve_params solve;
     // Where less than this share of the usable pixels fits the model, a frame does not refine it and
     // OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
@@ -1812,9 +1820,10 @@ const char *ofc_status_message(ofc_status status);
 // @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 ofc_status ofc_stream_params_default(struct ofc_stream_params *params);
 
-// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 12 for each pixel of
-// a row or 5184 are more than 20 for each color. OFC_STREAM_SIZE(width, height) is the same number for the default parameters, for static
-// buffers: 47,104 bytes at 320 x 240.
+// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 5184 or what rows
+// take are more than 20 for each color. Rows take 12 for each pixel of a row on OFC_ROAD_PAPER, and on OFC_ROAD_JOINT 36
+// and 116 for each of 192 cells. OFC_STREAM_SIZE(width, height) is no less for the default parameters, for
+// static buffers: 47,104 bytes at 320 x 240.
 //
 // @return The size, or 0 when an argument is invalid.
 size_t ofc_stream_size(int32_t width,
@@ -1833,14 +1842,19 @@ size_t ofc_stream_size(int32_t width,
 //     }
 //     ofc_status status = ofc_stream_end(stream, &pass);
 //
-// A cold start takes the passes over colors and tilts, and where eqs. 25 have several roots that over slants, all of one
-// frame or of consecutive frames of a scene at rest. Then there is F; a few rows of every
+// A cold start takes the pass over colors and those of its road, all of one frame or of consecutive frames of a scene at
+// rest: on OFC_ROAD_JOINT outward normals and integrability, on OFC_ROAD_PAPER tilts, and where eqs. 25 have several roots
+// slants. Then there is F; a few rows of every
 // further frame refine it, and for the others ofc_stream_row() does next to nothing. Medians and fits of
-// a cold start are those of a stratified sample of the colors. Where the sample holds all usable pixels, the solution is
-// that of ofc_solve() to the bit, but for what is not computed: the integral of a lone candidate (infinite) and
-// fit.covariance (zero).
+// a cold start are those of a stratified sample of the colors, and integrability is that of as many windows as there is
+// room for. Where the sample has room for all pixels, the solution is that of ofc_solve() to the bit, but for the
+// integral of a lone candidate, which is not computed (infinite); on OFC_ROAD_PAPER it is enough that it holds all usable
+// ones. Without the feature `full-streams` fit.covariance is zero.
 //
-// Stack, for this call and every other that takes a stream: below 4 KiB.
+// Frames that refine follow C and the strength of the lights. On OFC_ROAD_PAPER they also follow the tilts; on
+// OFC_ROAD_JOINT lights that turn about the scene as a whole are not seen, and need ofc_stream_restart().
+//
+// Stack, for this call and every other that takes a stream: below 4 KiB on OFC_ROAD_PAPER, 20 KiB on OFC_ROAD_JOINT.
 //
 // @param width, height  Of the frames.
 // @param format     How samples are stored; their order and planes are each row's own.
@@ -1901,8 +1915,8 @@ ofc_status ofc_stream_end(struct ofc_stream *stream,
 //
 // @param stream    The stream.
 // @param solution  Output. After frames that refined it: F, its stages and the fit are the last frame's, rank is that of
-//                  the cold start, candidates have no integral (infinite), tilts come from the axes alone, and counts
-//                  and census are of the pixels that were looked at.
+//                  the cold start, candidates have no integral (infinite), tilts come from the axes alone, covariances
+//                  are those of the cold start, and counts and census are of the pixels that were looked at.
 // @return As ofc_solve(), for the cold start; OFC_STATUS_NOT_SOLVED, `solution` untouched, before its last pass;
 //         OFC_STATUS_NO_STREAM; the status of an invalid argument.
 ofc_status ofc_stream_solution(struct ofc_stream *stream,
@@ -1954,10 +1968,9 @@ ofc_status ofc_stream_inliers_row(struct ofc_stream *stream, const struct ofc_im
 //
 // @param solution    What ofc_solve() wrote with OFC_STATUS_OK.
 // @param covariance  Output.
-// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's road, and
-//         streams); OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
-ofc_status ofc_solution_covariance(const struct ofc_solution *solution,
-                                   struct ofc_covariance *covariance);
+// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's
+//         road); OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+ofc_status ofc_solution_covariance(const struct ofc_solution *solution, struct ofc_covariance *covariance);
 
 // The 1-sigma angle of each normal that ofc_normals_compute() makes: that below which 68.3 % of errors are expected to lie;
 // 95.4 to 99.0 % lie below twice, 99.7 to 100.0 % below three times the angle. It is made of the noise in the colors (with
@@ -1970,8 +1983,8 @@ ofc_status ofc_solution_covariance(const struct ofc_solution *solution,
 // @param angle_rad  Output: height rows of width floats, row 0 at the top; above 0 and at most pi, and pi where there is no
 //                  normal. Exact colors make 0.
 // @param angle_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
-// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's road, and
-//         streams), of which nobody knows how sure it is; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's
+//         road), of which nobody knows how sure it is; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
 ofc_status ofc_normals_uncertainty(const struct ofc_image *image,
                                    const struct ofc_solution *solution,
                                    float *angle_rad,

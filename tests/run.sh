@@ -15,6 +15,8 @@ shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.
 step "format and lints"
 cargo fmt --all --check
 cargo clippy --quiet --workspace --all-targets -- -D warnings
+# Without the features that the tests ask for.
+cargo clippy --quiet -p ofc-core -- -D warnings
 
 step "Rust tests"
 cargo test --quiet --workspace

@@ -43,33 +43,40 @@ budget() {
     echo "| | flash | RAM | stack in a call | stack | rendering | cold solve | normals | warm frame |"
     echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
 } >"$table"
-for name in cortex-m7 cortex-m4f riscv32; do
+# measure NAME [FEATURE]: builds and runs the firmware for this board with a feature of the library, and adds its row.
+measure() {
+    local name=$1 program=$out/$1${2:+-$2} flash ram stack row stage
     board "$name"
-    build_archive "$name" "$triple" "$flags"
-    "${compiler[@]}" -Oz "$here"/{main,scene,print}.c "${start[@]}" "${before[@]}" "$archive" -lgcc -o "$out/$name.elf"
-    cannot_panic "$out/$name.elf"
-    if "$tools-objdump" -d "$out/$name.elf" | grep -E '\bblx[[:space:]]+r'; then
+    build_archive "$name" "$triple" "$flags" "${2-}"
+    "${compiler[@]}" -Oz "$here"/{main,scene,print}.c "${start[@]}" "${before[@]}" "$archive" -lgcc -o "$program.elf"
+    cannot_panic "$program.elf"
+    if "$tools-objdump" -d "$program.elf" | grep -E '\bblx[[:space:]]+r'; then
         echo "$name: a call through a pointer, which no call graph shows" >&2
         exit 1
     fi
-    echo "== $name"
-    emulate "$out/$name.elf" -icount shift=0 | tee "$out/$name.txt"
-    flash=$(section "$out/$name.elf" .text .rodata .data)
-    ram=$(section "$out/$name.elf" .data .bss)
-    stack=$(said "$out/$name.txt" stack call)
-    row="| $name | $flash | $ram | $stack | $(said "$out/$name.txt" stack program)"
+    echo "== $name${2:+, $2}"
+    emulate "$program.elf" -icount shift=0 | tee "$program.txt"
+    flash=$(section "$program.elf" .text .rodata .data)
+    ram=$(section "$program.elf" .data .bss)
+    stack=$(said "$program.txt" stack call)
+    row="| $name${2:+, \`$2\`} | $flash | $ram | $stack | $(said "$program.txt" stack program)"
     for stage in render cold normals warm; do
-        row+=" | $(said "$out/$name.txt" instructions $stage)"
+        row+=" | $(said "$program.txt" instructions $stage)"
     done
     echo "$row |" >>"$table"
-    if [ "$name" = cortex-m7 ]; then
+    if [ "$program" = "$out/cortex-m7" ]; then
         budget "flash" "$flash" 65536
         budget "RAM" "$ram" 65536
         budget "stack in a call" "$stack" 4096
-        budget "cold solve" "$(said "$out/$name.txt" instructions cold)" 100000000
-        budget "warm frame" "$(said "$out/$name.txt" instructions warm)" 8000000
+        budget "cold solve" "$(said "$program.txt" instructions cold)" 100000000
+        budget "warm frame" "$(said "$program.txt" instructions warm)" 8000000
     fi
+}
+
+for name in cortex-m7 cortex-m4f riscv32; do
+    measure "$name"
 done
+measure cortex-m7 full-streams
 echo
 cat "$table"
 if [ "${1-}" = --write ]; then

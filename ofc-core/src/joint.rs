@@ -22,15 +22,17 @@ mod form;
 mod integrable;
 mod outward;
 mod search;
+mod windows;
 
 use crate::image::{Image, WINDOW, Window};
 use crate::inliers::Inliers;
 use crate::mat3::{self, Mat3};
 use cells::{Cells, Grid, MeanPosition};
 use heapless::Vec;
-use integrable::Integrable;
+use integrable::{Integrable, RECORD};
 use libm::sqrt;
 use outward::Outward;
+use windows::{Area, Windows};
 
 /// Which evidence decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,27 +87,30 @@ pub const fn workspace_len(width: usize, height: usize) -> usize {
     cells::count(width, height).saturating_mul(cells::NUMBERS + integrable::NUMBERS)
 }
 
-/// Sums over the rows of a picture, four by four: all that its orientation is found from.
+/// Sums over the rows of a picture, four by four: all that its orientation is found from where there is room for cells of
+/// four pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Survey {
     grid: Grid,
     whole: MeanPosition,
 }
 
+/// How many `f32` rows are summed into, at least, where they are too many for cells of four pixels.
+pub(crate) const fn least_room(width: usize, height: usize) -> usize {
+    /// Sixteen by twelve, for pictures of that shape.
+    const FEWEST: usize = 192;
+    let count = cells::count(width, height);
+    cells::SUMS * if count < FEWEST { count } else { FEWEST }
+}
+
 /// Rows that are summed at a time.
 pub(crate) const STRIP: usize = cells::SIDE;
 
 impl Survey {
-    /// Over a picture of this size, of cells as small as `room` numbers allow while rows come and `later` ones after that;
-    /// `None` where there is nothing to sum. `numbers` are the room.
-    pub fn begin(
-        width: usize,
-        height: usize,
-        room: usize,
-        later: usize,
-        numbers: &mut [f32],
-    ) -> Option<Self> {
-        let grid = Grid::finest(width, height, room, later)?;
+    /// Over a picture of this size, of cells as small as `room` numbers allow, which they are put into; `None` where there is
+    /// nothing to sum.
+    pub fn begin(width: usize, height: usize, room: usize, numbers: &mut [f32]) -> Option<Self> {
+        let grid = Grid::finest(width, height, room)?;
         grid.clear(numbers);
         Some(Self { grid, whole: MeanPosition::default() })
     }
@@ -115,22 +120,88 @@ impl Survey {
         self.whole.add(x, y, exposed);
     }
 
-    /// Four rows that begin at `y`, a multiple of four: a window of each, one below the other, and their inliers.
+    /// Adds `len` columns of four rows, at the given pixel whose row is a multiple of four: their inliers, and `color` of row
+    /// and column.
+    #[inline]
     pub fn add(
         &self,
-        y: usize,
-        windows: &[Window; STRIP],
+        at: [usize; 2],
+        len: usize,
         inliers: [u64; STRIP],
         root: &Mat3,
+        color: impl Fn(usize, usize) -> [f32; 3],
         numbers: &mut [f32],
     ) {
-        self.grid.add(y, windows, inliers, root, numbers);
+        let normal = |row, column| mat3::apply(root, color(row, column).map(f64::from));
+        self.grid.add(at, len, inliers, normal, numbers);
     }
 
-    /// As [`estimate`], from the sums in the first of these numbers.
+    /// As [`estimate`], from the sums in the first of these numbers; `None` also where there was not room enough.
+    #[inline(never)]
     pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
+        if !self.grid.is_fine() || numbers.len() < self.grid.len() {
+            return None;
+        }
+        let (mut cells, rest) = Cells::of(&self.grid, numbers)?;
+        let outward = Outward::of(&cells, rest, self.whole.position())?;
+        let noise = cells.noise(rest)?;
+        let mut estimate = Estimate::new(&outward, &noise);
+        for _ in WINDOW_SIZES {
+            let goes_on = integrable::collect(&cells, rest)
+                // They overlap fourfold.
+                .is_none_or(|(records, scratch)| estimate.admit((records, 0.125), scratch));
+            if !goes_on || !cells.merge() {
+                break;
+            }
+        }
+        Some(estimate.end())
+    }
+
+    /// What cells of any size say; windows of the area that they lie in are to be summed next.
+    #[inline(never)]
+    pub fn outlook(&self, numbers: &mut [f32]) -> Option<Outlook> {
         let (cells, rest) = Cells::of(&self.grid, numbers)?;
-        of_cells(cells, rest, self.whole.position())
+        let outward = Outward::of(&cells, rest, self.whole.position())?;
+        let noise = cells.noise(rest)?;
+        Some(Outlook { outward, noise, area: cells.area()? })
+    }
+}
+
+/// What is known before windows are summed, where there is not room for all of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Outlook {
+    outward: Outward,
+    noise: Mat3,
+    area: Area,
+}
+
+impl Outlook {
+    /// Before the first row.
+    pub fn begin(&self, numbers: &mut [f32]) {
+        Windows::new(&self.area, numbers.len()).clear(numbers);
+    }
+
+    /// Adds the inliers of a window of row `y`.
+    pub fn add(&self, y: usize, window: &Window, inliers: u64, root: &Mat3, numbers: &mut [f32]) {
+        Windows::new(&self.area, numbers.len()).add(y, window, inliers, root, numbers);
+    }
+
+    /// As [`estimate`], from the windows that were summed.
+    #[inline(never)]
+    pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
+        let windows = Windows::new(&self.area, numbers.len());
+        let parts = self.area.parts();
+        let mut estimate = Estimate::new(&self.outward, &self.noise);
+        for spread in windows.spreads() {
+            let (own, scratch) = windows.split(spread, numbers)?;
+            let n =
+                spread.replace(own, |sums, at| integrable::record(sums, spread.size as f64, parts.of(at)));
+            let (records, _) = own.as_chunks();
+            if !estimate.admit((records.get(..n)?, spread.independent()), scratch.get_mut(..2 * n)?) {
+                break;
+            }
+        }
+        Some(estimate.end())
     }
 }
 
@@ -146,7 +217,7 @@ pub fn estimate(image: &Image, inliers: &Inliers, root: &Mat3, workspace: &mut [
     let (width, height) = (image.width(), image.height());
     let len = workspace_len(width, height);
     let workspace = workspace.get_mut(..len)?;
-    let mut survey = Survey::begin(width, height, len, len, workspace)?;
+    let mut survey = Survey::begin(width, height, len, workspace)?;
     let mut windows = [const { Window::new() }; STRIP];
     for y in (0..height).step_by(STRIP) {
         for x in (0..width).step_by(WINDOW) {
@@ -157,60 +228,70 @@ pub fn estimate(image: &Image, inliers: &Inliers, root: &Mat3, workspace: &mut [
                 *bits = inliers.bits(window);
             }
             if y + STRIP <= height {
-                survey.add(y, &windows, bits, root, workspace);
+                let [first, ..] = &windows;
+                let color = |row: usize, i| windows.get(row).map_or([0.0; 3], |window| window.pixel(i));
+                survey.add([x, y], first.len, bits, root, color, workspace);
             }
         }
     }
     survey.end(workspace)
 }
 
-/// The transformation, from cells and what lies behind them.
-fn of_cells(mut cells: Cells, rest: &mut [f32], whole: [f64; 2]) -> Option<Joint> {
-    let outward = Outward::of(&cells, rest, whole)?;
-    let noise = cells.noise(rest)?;
+/// From windows of growing size to the answer.
+struct Estimate<'o> {
+    outward: &'o Outward,
+    noise: &'o Mat3,
+    /// What outward normals say alone.
+    alone: Mat3,
+    admitted: Vec<Scale, { WINDOW_SIZES.len() }>,
+    /// The least systematic error.
+    radial: f64,
+}
 
-    let prior = |rows: &Mat3| outward.cost(rows);
-    let mut best = search::minimum(&search::starts(), prior);
-    let mut admitted: Vec<Scale, { WINDOW_SIZES.len() }> = Vec::new();
-    let mut radial = f64::INFINITY;
-    for _ in WINDOW_SIZES {
-        if let Some((form, rows)) = Integrable::of(&cells, &noise, &outward, best.rows, &mut radial, rest) {
-            let information = search::hessian(&rows, |rows| form.cost(rows) + prior(rows));
-            let spread = trace(&inverse(&information, 1.0 / LARGEST_VARIANCE));
-            let scale = Scale { form, rows, information, spread };
-            if !admitted.iter().all(|smaller| smaller.agrees(&rows)) || admitted.push(scale).is_err() {
-                break;
-            }
-        }
-        if !cells.merge() {
-            break;
-        }
+impl<'o> Estimate<'o> {
+    fn new(outward: &'o Outward, noise: &'o Mat3) -> Self {
+        let alone = search::minimum([&mat3::IDENTITY; 2], |rows| outward.cost(rows)).rows;
+        Self { outward, noise, alone, admitted: Vec::new(), radial: f64::INFINITY }
     }
 
-    let chosen = admitted.iter().reduce(
-        |chosen, larger| {
-            if larger.spread < GAIN * chosen.spread { larger } else { chosen }
-        },
-    );
-    let form = chosen.map(|chosen| &chosen.form);
-    let cost = |rows: &Mat3| prior(rows) + form.map_or(0.0, |form| form.cost(rows));
-    let mut starts = search::starts();
-    starts[0] = best.rows;
-    if let Some(chosen) = chosen {
-        starts[1] = chosen.rows;
+    /// Windows of the next size, and what each counts as; whether still larger ones are of use.
+    #[inline(never)]
+    fn admit(&mut self, records: (&[[f32; RECORD]], f64), scratch: &mut [f32]) -> bool {
+        let (outward, noise) = (self.outward, self.noise);
+        let Some((form, rows)) =
+            Integrable::of(records, noise, outward, self.alone, &mut self.radial, scratch)
+        else {
+            return true;
+        };
+        let information = search::hessian(&rows, |rows| form.cost(rows) + outward.cost(rows));
+        let spread = trace(&inverse(&information, 1.0 / LARGEST_VARIANCE));
+        let scale = Scale { form, rows, information, spread };
+        self.admitted.iter().all(|smaller| smaller.agrees(&rows)) && self.admitted.push(scale).is_ok()
     }
-    best = search::minimum(&starts, cost);
-    let information = search::hessian(&best.rows, cost);
-    let covariance = inverse(&information, 1.0 / LARGEST_VARIANCE);
-    let shared = trace(&mat3::multiply(&covariance, &search::hessian(&best.rows, prior))) / 3.0;
-    let evidence = match shared {
-        share if share > 0.75 => Evidence::Outward,
-        share if share < 0.25 => Evidence::Integrability,
-        _ => Evidence::Both,
-    };
-    let rows = outward.facing(best.rows);
-    let (rows, dome) = outward.convex(rows);
-    Some(Joint { rows, covariance, evidence, dome, second_best: best.second })
+
+    #[inline(never)]
+    fn end(&self) -> Joint {
+        let outward = self.outward;
+        let chosen = self
+            .admitted
+            .iter()
+            .reduce(|chosen, larger| if larger.spread < GAIN * chosen.spread { larger } else { chosen });
+        let prior = |rows: &Mat3| outward.cost(rows);
+        let form = chosen.map(|chosen| &chosen.form);
+        let cost = |rows: &Mat3| prior(rows) + form.map_or(0.0, |form| form.cost(rows));
+        let own = chosen.map_or(&mat3::IDENTITY, |chosen| &chosen.rows);
+        let best = search::minimum([&self.alone, own], cost);
+        let information = search::hessian(&best.rows, cost);
+        let covariance = inverse(&information, 1.0 / LARGEST_VARIANCE);
+        let shared = trace(&mat3::multiply(&covariance, &search::hessian(&best.rows, prior))) / 3.0;
+        let evidence = match shared {
+            share if share > 0.75 => Evidence::Outward,
+            share if share < 0.25 => Evidence::Integrability,
+            _ => Evidence::Both,
+        };
+        let (rows, dome) = outward.convex(outward.facing(best.rows));
+        Joint { rows, covariance, evidence, dome, second_best: best.second }
+    }
 }
 
 /// What windows of one size say together with the outward normals.

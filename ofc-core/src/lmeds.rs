@@ -157,7 +157,8 @@ pub struct Fit {
     pub coefficients: [Estimate; TERMS],
     /// What squares and products of the errors of these coefficients are expected to be: the covariance of least squares,
     /// the square of the bias that noise makes, and that of the difference from `robust`, toward which its inliers pull the fit;
-    /// on large pictures the first is the smallest. The upper triangle, row by row. Zero in a stream.
+    /// on large pictures the first is the smallest. The upper triangle, row by row. Zero in a
+    /// stream without the feature `full-streams`.
     pub covariance: Triangle,
     /// The standard deviation of the inliers' residuals under the reweighted fit.
     pub residual_deviation: f64,
@@ -166,8 +167,8 @@ pub struct Fit {
     /// The noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values; at least
     /// what rounding to the picture's steps makes.
     pub noise_deviation: f64,
-    /// The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single pixels. In a
-    /// stream only what rounding makes.
+    /// The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single pixels. In
+    /// a stream without `full-streams` only what rounding makes.
     pub pixel_noise: f64,
     /// The noise in each channel with which colors that do not determine C could look like these. The coefficients are
     /// biased by about (`noise_deviation` / `degenerate_noise_deviation`)^2, whatever their standard errors say.

@@ -13,7 +13,7 @@ use crate::integrability;
 use crate::joint::{self, Joint};
 use crate::lmeds::{self, Fit, FitError, Method};
 use crate::location::{self, Location};
-use crate::mat3;
+use crate::mat3::{self, Mat3};
 use crate::orientation::{self, Orientation, RANK_THRESHOLD};
 use crate::pixels::Pixels;
 use crate::rank::{self, Rank};
@@ -81,6 +81,11 @@ impl Params {
                 TiltEstimator::Given(tilts) => tilts.iter().all(|tilt| tilt.is_finite()),
                 _ => true,
             }
+    }
+
+    /// Whether F is oriented as a whole, where it can be.
+    pub(crate) const fn is_joint(&self) -> bool {
+        matches!(self.road, Road::Joint) && !matches!(self.tilts, TiltEstimator::Given(_))
     }
 
     /// Which pixels of `image` can be used.
@@ -215,16 +220,11 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         return Ok(solution);
     }
     let inliers = solution.inliers;
-    if params.road == Road::Joint
-        && !matches!(params.tilts, TiltEstimator::Given(_))
-        && let Some(ellipsoid) = solution.ellipsoid
+    if params.is_joint()
+        && let Some(ellipsoid) = &solution.ellipsoid
     {
-        solution.joint = joint::estimate(image, &inliers, &ellipsoid.root, workspace);
-        if let Some(joint) = &solution.joint {
-            let (tilts, choice) = oriented(joint, &ellipsoid, params.rank_threshold);
-            let is_solved = choice.orientation.rank == 3;
-            solution.outcome = if is_solved { Outcome::Solved } else { Outcome::RankDeficient };
-            (solution.tilts, solution.choice) = (Some(tilts), Some(choice));
+        let joint = joint::estimate(image, &inliers, &ellipsoid.root, workspace);
+        if solution.orient(joint, params) {
             return Ok(solution);
         }
     }
@@ -237,10 +237,11 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     Ok(solution)
 }
 
-/// F as a whole.
-fn oriented(joint: &Joint, ellipsoid: &Ellipsoid, rank_threshold: f64) -> (Tilts, Choice) {
+/// F as a whole: the inverse of `rows` times the root of C.
+#[inline(never)]
+pub(crate) fn oriented(rows: &Mat3, ellipsoid: &Ellipsoid, rank_threshold: f64) -> (Tilts, Choice) {
     let (inverse, _) = mat3::pseudo_inverse(&mat3::svd(&ellipsoid.root), f64::EPSILON);
-    let f = mat3::multiply(&inverse, &mat3::transpose(&joint.rows));
+    let f = mat3::multiply(&inverse, &mat3::transpose(rows));
     let orientation = Orientation::new(f, rank_threshold);
     let tilts = Tilts::alone(f.map(|[x, y, _]| atan2(y, x)));
     let slants = f.map(|[x, y, z]| atan2(hypot(x, y), z));
@@ -335,6 +336,16 @@ impl Solution {
         }
         self.outcome = Outcome::NoTilt;
         Ok(())
+    }
+
+    /// Ends with this transformation, if there is one; whether there is.
+    pub(crate) fn orient(&mut self, joint: Option<Joint>, params: &Params) -> bool {
+        self.joint = joint;
+        let (Some(joint), Some(ellipsoid)) = (joint, &self.ellipsoid) else { return false };
+        let (tilts, choice) = oriented(&joint.rows, ellipsoid, params.rank_threshold);
+        (self.tilts, self.choice) = (Some(tilts), Some(choice));
+        self.conclude();
+        true
     }
 
     /// Ends with the choice of slants that is in its place.

@@ -4,13 +4,18 @@
 //! colors keeps a stratified sample, and ends with the model: everything that medians and fits are for is computed on the
 //! sample. The pass over its tilts sums the differences between neighbouring inliers, of this row and the one before it,
 //! and ends with F where there is one candidate for the slants. Where there are several, a pass over the slants sums the
-//! integral (15) of all of them at once, and ends with F. Then normals and inliers of any row can be had, and one pass
-//! over a few rows of a later frame refines the model.
+//! integral (15) of all of them at once, and ends with F. On the other road ([`Road::Joint`]) two passes take their
+//! place: one sums the moments of the normals over cells, four rows at a time, for what outward normals say, and one over
+//! windows of several sizes, as many as the memory holds, for integrability; it ends with F. Where the memory holds cells
+//! of four pixels the first of them ends with F. Then normals and inliers of any row can be had, and one pass over a few
+//! rows of a later frame refines the model.
 //!
-//! Where the sample holds every usable pixel the result is that of [`solve`](crate::solve::solve), bit for bit, but for what
-//! is not computed: the integral of a lone candidate (infinite) and the errors of the fit (its covariance is zero).
+//! Where the sample has room for all pixels the result is that of [`solve`](crate::solve::solve), bit for bit, but for the
+//! integral of a lone candidate, which is not computed (infinite). Without the feature `full-streams` there is the
+//! paper's road alone, shadows are kept, and errors of the fit are not computed (its covariance is zero).
 
 mod cold;
+mod orientation;
 mod output;
 mod rows;
 mod strata;
@@ -21,6 +26,7 @@ pub use warm::{Change, Drift};
 use crate::constrained_slant::{MAX_CANDIDATES, ROOM};
 use crate::image::{Census, Image, MAX_PIXELS, Sample, Usable};
 use crate::integrability;
+use crate::joint::{self, Outlook, STRIP, Survey};
 use crate::lmeds::{self, FitError, MIN_PIXELS};
 use crate::mat3::Mat3;
 use crate::regression::Moments;
@@ -29,12 +35,15 @@ use crate::tilt::{TiltEstimator, pentland};
 use rows::Rows;
 use strata::Strata;
 
+/// Whether streams do all that [`solve`](crate::solve::solve) does.
+pub const FULL: bool = cfg!(feature = "full-streams");
+
 /// What to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
     /// The pipeline's. `lmeds.sample_size` is how many colors the sample has room for, at least 24, here 2048 by default;
-    /// shadows are not looked for, tilts are Pentland's or given, and without a root slants are refused or fitted by least
-    /// squares.
+    /// tilts are Pentland's or given, and without a root slants are refused or fitted by least squares. Unless [`FULL`], the
+    /// road is the paper's and shadows are not looked for.
     pub solve: solve::Params,
     /// Where less than this share of the usable pixels has a residual that the model accepts, in [0, 1], a frame does not
     /// refine it: a cold start is needed. Default 0.5, what least median of squares rests on.
@@ -47,8 +56,8 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         let lmeds = lmeds::Params { sample_size: 2048, ..lmeds::Params::default() };
-        let solve =
-            solve::Params { lmeds, road: Road::Paper, reject_shadows: false, ..solve::Params::default() };
+        let road = if FULL { Road::Joint } else { Road::Paper };
+        let solve = solve::Params { lmeds, road, reject_shadows: FULL, ..solve::Params::default() };
         Self { solve, smallest_share: 0.5, refine_pixels: 16_384 }
     }
 }
@@ -61,8 +70,7 @@ impl Params {
             && (0.0..=1.0).contains(&self.smallest_share)
             // Merged strata leave half of the sample.
             && self.solve.lmeds.sample_size as usize >= 2 * MIN_PIXELS
-            && self.solve.road == Road::Paper
-            && !self.solve.reject_shadows
+            && (FULL || self.solve.road == Road::Paper && !self.solve.reject_shadows)
             && matches!(self.solve.tilts, TiltEstimator::Pentland | TiltEstimator::Given(_))
             && matches!(self.solve.fallback, SlantFallback::Refuse | SlantFallback::LeastSquares)
     }
@@ -77,6 +85,10 @@ pub enum Pass {
     Tilts,
     /// The choice among the candidate slants.
     Slants,
+    /// How normals point outward, for the orientation as a whole; with room for all windows, the orientation.
+    Outward,
+    /// That they are those of one surface, and the orientation.
+    Integrability,
     /// F is there: the frame refines it.
     Refine,
 }
@@ -108,11 +120,19 @@ pub enum StreamError {
 
 /// How many `f32` [`Memory::values`] needs.
 #[must_use]
-pub const fn values_len(width: usize, height: usize, sample_size: u32) -> usize {
+pub const fn values_len(width: usize, height: usize, sample_size: u32, road: Road) -> usize {
     let sample = room(width, height, sample_size).saturating_mul(5);
-    let row = width.saturating_mul(3);
-    let larger = if sample > row { sample } else { row };
+    let rows = match road {
+        Road::Paper => width.saturating_mul(3),
+        Road::Joint => rows_len(width).saturating_add(joint::least_room(width, height)),
+    };
+    let larger = if sample > rows { sample } else { rows };
     if larger > ROOM { larger } else { ROOM }
+}
+
+/// How many `f32` the rows above a strip's last one are.
+const fn rows_len(width: usize) -> usize {
+    width.saturating_mul(3 * (STRIP - 1))
 }
 
 /// How many bytes [`Memory::places`] needs.
@@ -130,10 +150,24 @@ const fn room(width: usize, height: usize, sample_size: u32) -> usize {
 /// The caller's buffers, which belong to the stream from one call to the next. What they hold at first does not matter.
 #[derive(Debug)]
 pub struct Memory<'m> {
-    /// [`values_len`] numbers: the sample and its residuals, then the row before, then boxes of slants.
+    /// [`values_len`] numbers: the sample and its residuals, then the row before and boxes of slants, or cells and the rows
+    /// before.
     pub values: &'m mut [f32],
     /// [`places_len`] bytes: where in the frame the sample is from.
     pub places: &'m mut [u8],
+}
+
+/// What one pass holds for itself or for the next one.
+#[derive(Clone, Debug)]
+enum Held {
+    Nothing,
+    /// F^-1 of every candidate, and its integral.
+    Candidates {
+        inverses: [Option<Mat3>; MAX_CANDIDATES],
+        integrals: [integrability::Sum; MAX_CANDIDATES],
+    },
+    Survey(Survey),
+    Outlook(Outlook),
 }
 
 /// What a stream remembers beside its buffers.
@@ -154,8 +188,7 @@ pub struct State {
     history: pentland::Sums,
     inlier_count: usize,
     rows: Rows,
-    candidates: [Option<Mat3>; MAX_CANDIDATES],
-    integrals: [integrability::Sum; MAX_CANDIDATES],
+    held: Held,
     moments: Moments,
     /// What colors are multiplied with before their moments are summed: a power of two.
     scale: f64,
@@ -208,8 +241,7 @@ impl State {
             history: pentland::Sums::default(),
             inlier_count: 0,
             rows: Rows::new(height, &Census::default(), 0),
-            candidates: [None; MAX_CANDIDATES],
-            integrals: [integrability::Sum::default(); MAX_CANDIDATES],
+            held: Held::Nothing,
             moments: Moments::default(),
             scale: 1.0,
             drift: None,
@@ -254,7 +286,8 @@ impl<'m> Stream<'m> {
     pub fn new(state: &'m mut State, memory: Memory<'m>) -> Result<Self, StreamError> {
         let (width, height, sample_size) = (state.width, state.height, state.params.solve.lmeds.sample_size);
         let Memory { values, places } = memory;
-        let values = values.get_mut(..values_len(width, height, sample_size)).ok_or(StreamError::TooShort)?;
+        let len = values_len(width, height, sample_size, state.params.solve.road);
+        let values = values.get_mut(..len).ok_or(StreamError::TooShort)?;
         let places = places.get_mut(..places_len(width, height, sample_size)).ok_or(StreamError::TooShort)?;
         Ok(Self { state, memory: Memory { values, places } })
     }
@@ -279,6 +312,9 @@ impl<'m> Stream<'m> {
             Pass::Colors => state.begin_colors(),
             Pass::Tilts => state.begin_tilts(),
             Pass::Slants => state.begin_slants(),
+            Pass::Outward if FULL => state.begin_outward(&mut self.memory),
+            Pass::Integrability if FULL => state.begin_integrability(&mut self.memory),
+            Pass::Outward | Pass::Integrability => {}
             Pass::Refine => state.begin_refine(),
         }
         state.row = Some(0);
@@ -304,6 +340,9 @@ impl<'m> Stream<'m> {
             Pass::Colors => state.row_colors(y, row, &mut self.memory),
             Pass::Tilts => state.row_tilts(y, row, &mut self.memory),
             Pass::Slants => state.row_slants(y, row, &mut self.memory),
+            Pass::Outward if FULL => state.row_outward(y, row, &mut self.memory),
+            Pass::Integrability if FULL => state.row_integrability(y, row, &mut self.memory),
+            Pass::Outward | Pass::Integrability => {}
             Pass::Refine => state.row_refine(y, row, &mut self.memory),
         }
         state.row = Some(y + 1);
@@ -326,6 +365,9 @@ impl<'m> Stream<'m> {
             Pass::Colors => state.end_colors(&mut self.memory)?,
             Pass::Tilts => state.end_tilts(&mut self.memory),
             Pass::Slants => state.end_slants(),
+            Pass::Outward if FULL => state.end_outward(&mut self.memory),
+            Pass::Integrability if FULL => state.end_integrability(&mut self.memory),
+            Pass::Outward | Pass::Integrability => {}
             Pass::Refine => state.end_refine(&mut self.memory),
         }
         Ok(state.pass)

@@ -14,6 +14,7 @@ use crate::status::{
 };
 use core::ffi::c_void;
 use ofc_core::image::Image;
+use ofc_core::solve::Road;
 use ofc_core::stream::{self, Change, Drift, Memory, Params, Pass, State, Stream, StreamError};
 
 /// What the rows of a stream's frame are for: one of OFC_PASS_*.
@@ -26,14 +27,19 @@ pub const OFC_PASS_TILTS: i32 = 2;
 pub const OFC_PASS_SLANTS: i32 = 3;
 /// F is there, and the frame refines it.
 pub const OFC_PASS_REFINE: i32 = 4;
+/// A cold start on OFC_ROAD_JOINT: how normals point outward; where the sample has room for all pixels also F.
+pub const OFC_PASS_OUTWARD: i32 = 5;
+/// A cold start on OFC_ROAD_JOINT: integrability, and F.
+pub const OFC_PASS_INTEGRABILITY: i32 = 6;
 
 /// What a stream does. Set by ofc_stream_params_default().
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_stream_params {
     /// As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
-    /// keep_shadows is 1, road OFC_ROAD_PAPER, tilt_estimator OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
-    /// OFC_FALLBACK_LEAST_SQUARES.
+    /// tilt_estimator is OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
+    /// OFC_FALLBACK_LEAST_SQUARES. A library built without the feature `full-streams`, for small memories, knows
+    /// OFC_ROAD_PAPER with keep_shadows alone, and these are then the defaults.
     pub solve: ofc_solve_params,
     /// Where less than this share of the usable pixels fits the model, a frame does not refine it and
     /// OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
@@ -90,20 +96,24 @@ const _: () = assert!(size_of::<Head>() <= STATE_BYTES && align_of::<Head>() <= 
 /// The first word of a stream.
 const MAGIC: u64 = 0x6d61_6572_7473_666f;
 
-/// The words of a stream for so many pixels in a row, rows and sampled colors; the last one checks the others.
-fn words(size: u64, sample_size: u64) -> [u64; 4] {
+/// The words of a stream for so many pixels in a row and rows, and so many sampled colors on its road; the last one checks
+/// the others.
+fn words(size: u64, sample: u64) -> [u64; 4] {
     const ODD: u64 = 0x9e37_79b9_7f4a_7c15;
-    [
-        MAGIC,
-        size,
-        sample_size,
-        (MAGIC ^ size).wrapping_mul(ODD).rotate_left(32) ^ sample_size.wrapping_mul(ODD),
-    ]
+    [MAGIC, size, sample, (MAGIC ^ size).wrapping_mul(ODD).rotate_left(32) ^ sample.wrapping_mul(ODD)]
+}
+
+/// The sampled colors and the road as one word.
+fn sample_word(params: &Params) -> u64 {
+    let road = u64::from(params.solve.road == Road::Joint);
+    road << 32 | u64::from(params.solve.lmeds.sample_size)
 }
 
 /// How many floats and bytes lie behind the state, and how many bytes all of it takes; 0 when that is too much.
-fn sizes(width: usize, height: usize, sample_size: u32) -> (usize, usize, usize) {
-    let values = stream::values_len(width, height, sample_size);
+fn sizes(width: usize, height: usize, sample: u64) -> (usize, usize, usize) {
+    let sample_size = sample as u32;
+    let road = if sample >> 32 == 0 { Road::Paper } else { Road::Joint };
+    let values = stream::values_len(width, height, sample_size, road);
     let places = stream::places_len(width, height, sample_size);
     let bytes = values.checked_mul(4).and_then(|bytes| bytes.checked_add(places + STATE_BYTES + 7));
     (values, places, bytes.map_or(0, |bytes| bytes / 8 * 8))
@@ -125,6 +135,8 @@ const fn of_pass(pass: Pass) -> ofc_stream_pass {
         Pass::Colors => OFC_PASS_COLORS,
         Pass::Tilts => OFC_PASS_TILTS,
         Pass::Slants => OFC_PASS_SLANTS,
+        Pass::Outward => OFC_PASS_OUTWARD,
+        Pass::Integrability => OFC_PASS_INTEGRABILITY,
         Pass::Refine => OFC_PASS_REFINE,
     }
 }
@@ -136,12 +148,12 @@ const fn of_pass(pass: Pass) -> ofc_stream_pass {
 unsafe fn opened<'a>(pointer: *mut ofc_stream) -> Result<(Stream<'a>, Extent), ofc_status> {
     let head = pointer.cast::<Head>();
     extent(head.cast_const(), 1)?;
-    let ([magic, size, sample_size, check], _) = input_array::<u64, 4>(head.cast())?;
-    if [magic, size, sample_size, check] != words(size, sample_size) {
+    let ([magic, size, sample, check], _) = input_array::<u64, 4>(head.cast())?;
+    if [magic, size, sample, check] != words(size, sample) {
         return Err(OFC_STATUS_NO_STREAM);
     }
     let (width, height) = ((size >> 32) as usize, size as u32 as usize);
-    let (values, places, bytes) = sizes(width, height, sample_size as u32);
+    let (values, places, bytes) = sizes(width, height, sample);
     let whole = extent(pointer.cast::<u8>().cast_const(), bytes)?;
     // SAFETY: its words say that `init` was here, which has seen that there are so many bytes; state and buffers lie apart.
     let (state, memory) = unsafe {
@@ -163,16 +175,18 @@ pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_param
         let Params { solve, smallest_share, refine_pixels } = Params::default();
         let mut defaults = ofc_solve_params::defaults();
         defaults.lmeds.sample_size = solve.lmeds.sample_size;
-        defaults.road = OFC_ROAD_PAPER;
-        defaults.keep_shadows = 1;
+        if !stream::FULL {
+            (defaults.road, defaults.keep_shadows) = (OFC_ROAD_PAPER, 1);
+        }
         out.write(ofc_stream_params { solve: defaults, smallest_share, refine_pixels, reserved: [0; 3] });
         OFC_STATUS_OK
     }))
 }
 
-/// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 12 for each pixel of
-/// a row or 5184 are more than 20 for each color. OFC_STREAM_SIZE(width, height) is the same number for the default parameters, for static
-/// buffers: 47,104 bytes at 320 x 240.
+/// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 5184 or what rows
+/// take are more than 20 for each color. Rows take 12 for each pixel of a row on OFC_ROAD_PAPER, and on OFC_ROAD_JOINT 36
+/// and 116 for each of 192 cells. OFC_STREAM_SIZE(width, height) is no less for the default parameters, for
+/// static buffers: 47,104 bytes at 320 x 240.
 ///
 /// @return The size, or 0 when an argument is invalid.
 #[unsafe(no_mangle)]
@@ -181,7 +195,7 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
     if pixel_count(width, height) == 0 {
         return 0;
     }
-    sizes(dimension(width), dimension(height), params.solve.lmeds.sample_size).2
+    sizes(dimension(width), dimension(height), sample_word(&params)).2
 }
 
 /// Makes a stream for frames that come row by row. A frame is begun, given its rows from the top down, and ended; which
@@ -196,14 +210,19 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 ///     }
 ///     ofc_status status = ofc_stream_end(stream, &pass);
 ///
-/// A cold start takes the passes over colors and tilts, and where eqs. 25 have several roots that over slants, all of one
-/// frame or of consecutive frames of a scene at rest. Then there is F; a few rows of every
+/// A cold start takes the pass over colors and those of its road, all of one frame or of consecutive frames of a scene at
+/// rest: on OFC_ROAD_JOINT outward normals and integrability, on OFC_ROAD_PAPER tilts, and where eqs. 25 have several roots
+/// slants. Then there is F; a few rows of every
 /// further frame refine it, and for the others ofc_stream_row() does next to nothing. Medians and fits of
-/// a cold start are those of a stratified sample of the colors. Where the sample holds all usable pixels, the solution is
-/// that of ofc_solve() to the bit, but for what is not computed: the integral of a lone candidate (infinite) and
-/// fit.covariance (zero).
+/// a cold start are those of a stratified sample of the colors, and integrability is that of as many windows as there is
+/// room for. Where the sample has room for all pixels, the solution is that of ofc_solve() to the bit, but for the
+/// integral of a lone candidate, which is not computed (infinite); on OFC_ROAD_PAPER it is enough that it holds all usable
+/// ones. Without the feature `full-streams` fit.covariance is zero.
 ///
-/// Stack, for this call and every other that takes a stream: below 4 KiB.
+/// Frames that refine follow C and the strength of the lights. On OFC_ROAD_PAPER they also follow the tilts; on
+/// OFC_ROAD_JOINT lights that turn about the scene as a whole are not seen, and need ofc_stream_restart().
+///
+/// Stack, for this call and every other that takes a stream: below 4 KiB on OFC_ROAD_PAPER, 20 KiB on OFC_ROAD_JOINT.
 ///
 /// @param width, height  Of the frames.
 /// @param format     How samples are stored; their order and planes are each row's own.
@@ -234,13 +253,13 @@ pub unsafe extern "C" fn ofc_stream_init(
             return Err(OFC_STATUS_TOO_LARGE);
         }
         let (width, height) = (dimension(width), dimension(height));
-        let sample_size = params.solve.lmeds.sample_size;
-        let (_, _, need) = sizes(width, height, sample_size);
+        let word = sample_word(&params);
+        let (_, _, need) = sizes(width, height, word);
         let memory_extent = workspace(memory.cast(), memory_bytes, need)?;
         let out = Out::new(stream)?;
         disjoint(&[memory_extent, out.extent], &[params_extent])?;
         State::check_size(width, height, &params).map_err(of_stream_error)?;
-        let words = words((width as u64) << 32 | height as u64, u64::from(sample_size));
+        let words = words((width as u64) << 32 | height as u64, word);
         // SAFETY: aligned, long enough, and apart from everything else.
         unsafe {
             let head = memory.cast::<Head>();
@@ -356,8 +375,8 @@ pub unsafe extern "C" fn ofc_stream_end(stream: *mut ofc_stream, pass: *mut ofc_
 ///
 /// @param stream    The stream.
 /// @param solution  Output. After frames that refined it: F, its stages and the fit are the last frame's, rank is that of
-///                  the cold start, candidates have no integral (infinite), tilts come from the axes alone, and counts
-///                  and census are of the pixels that were looked at.
+///                  the cold start, candidates have no integral (infinite), tilts come from the axes alone, covariances
+///                  are those of the cold start, and counts and census are of the pixels that were looked at.
 /// @return As ofc_solve(), for the cold start; OFC_STATUS_NOT_SOLVED, `solution` untouched, before its last pass;
 ///         OFC_STATUS_NO_STREAM; the status of an invalid argument.
 #[unsafe(no_mangle)]

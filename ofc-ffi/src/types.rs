@@ -337,10 +337,10 @@ pub struct ofc_color_fit {
     /// Noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values.
     pub noise_deviation: f64,
     /// The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single
-    /// pixels. In a stream only what rounding makes.
+    /// pixels. In a stream without the feature `full-streams` only what rounding makes.
     pub pixel_noise: f64,
     /// Noise in each channel with which colors that do not determine C could look like these. solve refuses where it
-    /// is below 1.5 times noise_deviation; C is biased by about the inverse square of that ratio.
+    /// is below 1.15 times noise_deviation; C is biased by about the inverse square of that ratio.
     pub degenerate_noise_deviation: f64,
     /// Pixels within residual_form's band.
     pub inlier_count: i32,

@@ -57,8 +57,8 @@ fn sources(solution: &ofc_solution) -> Result<Sources, ofc_status> {
 ///
 /// @param solution    What ofc_solve() wrote with OFC_STATUS_OK.
 /// @param covariance  Output.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's road, and
-///         streams); OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's
+///         road); OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_solution_covariance(
     solution: *const ofc_solution,
@@ -102,8 +102,8 @@ fn row_major<const N: usize, const SQUARE: usize>(matrix: &[[f64; N]; N]) -> [f6
 /// @param angle_rad  Output: height rows of width floats, row 0 at the top; above 0 and at most pi, and pi where there is no
 ///                  normal. Exact colors make 0.
 /// @param angle_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's road, and
-///         streams), of which nobody knows how sure it is; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's
+///         road), of which nobody knows how sure it is; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_normals_uncertainty(
     image: *const ofc_image,

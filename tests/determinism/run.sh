@@ -43,7 +43,7 @@ compare() {
 host() {
     local name=$1 flags=$2 library=$out/$1-library
     shift 2
-    RUSTFLAGS=$flags cargo build --quiet -p ofc-ffi --no-default-features --features panic-handler \
+    RUSTFLAGS=$flags cargo build --quiet -p ofc-ffi --no-default-features --features panic-handler,full-streams \
         --target-dir "$library" "$@"
     gcc "${options[@]}" -no-pie "${portable[@]}" "$here"/{linux,memory}.c "$library"/*/libofc.a -o "$out/$name"
 }
@@ -66,17 +66,17 @@ fi
 
 for name in cortex-m4f cortex-m7 riscv32; do
     board "$name"
-    build_archive "$name" "$triple" "$flags"
+    build_archive "$name" "$triple" "$flags" full-streams
     "${compiler[@]}" -O2 "${portable[@]}" "${start[@]}" "${before[@]}" "$archive" -lgcc -o "$out/$name"
     cannot_panic "$out/$name"
     compare "$name" emulate "$out/$name"
 done
 
-build_archive aarch64 aarch64-unknown-none ""
+build_archive aarch64 aarch64-unknown-none "" full-streams
 aarch64-linux-gnu-gcc "${options[@]}" "${portable[@]}" "$here/linux.c" "$archive" -o "$out/aarch64"
 compare aarch64 qemu-aarch64 "$out/aarch64"
 
-build_archive big-endian-arm armebv7r-none-eabihf ""
+build_archive big-endian-arm armebv7r-none-eabihf "" full-streams
 arm-none-eabi-gcc "${options[@]}" -marm -mbig-endian -mcpu=cortex-r5 -mfloat-abi=hard -mfpu=vfpv3-d16 "-Wl,--be8" \
     "${portable[@]}" "$here/linux.c" "$archive" -lgcc -o "$out/big-endian-arm"
 compare big-endian-arm qemu-armeb "$out/big-endian-arm"

@@ -1,4 +1,4 @@
-/* The same picture as rows: a cold start and two frames that refine it. */
+/* The same picture as rows, on both roads: a cold start and frames that refine it. */
 #include "digest.h"
 #include "stages.h"
 
@@ -16,7 +16,7 @@ static ofc_image row_of(const ofc_image *image, int y)
     return row;
 }
 
-void mix_stream(const ofc_image *image)
+static void mix_road(const ofc_image *image, ofc_road road)
 {
     static uint64_t memory[OFC_STREAM_SIZE_FOR(WIDTH, HEIGHT, 300) / sizeof(uint64_t) + 1];
     ofc_stream_params params;
@@ -24,6 +24,8 @@ void mix_stream(const ofc_image *image)
     mix_status(ofc_stream_params_default(&params));
     params.solve.lmeds.sample_size = 300;
     params.solve.lmeds.subsets = 20;
+    params.solve.road = road;
+    params.solve.keep_shadows = road == OFC_ROAD_PAPER;
     mix_status(ofc_stream_init(image->width, image->height, image->format, &params, memory, sizeof memory, &stream));
     for (int frame = 0; stream != NULL && frame < 5; frame++) {
         ofc_stream_pass pass = 0;
@@ -56,4 +58,10 @@ void mix_stream(const ofc_image *image)
     }
     if (stream != NULL)
         mix_status(ofc_stream_restart(stream));
+}
+
+void mix_stream(const ofc_image *image)
+{
+    mix_road(image, OFC_ROAD_PAPER);
+    mix_road(image, OFC_ROAD_JOINT);
 }

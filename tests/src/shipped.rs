@@ -18,7 +18,7 @@ pub fn folder() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let arguments = "build --quiet --release -p ofc-ffi --no-default-features --features panic-handler \
+        let arguments = "build --quiet --release -p ofc-ffi --no-default-features --features panic-handler,full-streams \
                          --target-dir target/ship";
         let status = Command::new(cargo).args(arguments.split_whitespace()).current_dir(root()).status();
         assert!(status.expect("cargo runs").success(), "cargo {arguments}");

@@ -1,8 +1,10 @@
 //! Moments of N over small squares of pixels, and how two by two of them make the next size.
 
-use crate::image::{Window, for_each_bit};
-use crate::mat3::{self, Mat3};
+use super::windows::Area;
+use crate::image::for_each_bit;
+use crate::mat3::Mat3;
 use crate::select::{kth_smallest, median_rank};
+use core::num::NonZero;
 
 /// Pixels along the side of the smallest squares.
 pub(super) const SIDE: usize = 4;
@@ -56,12 +58,12 @@ pub(super) struct Plane {
 }
 
 impl Moments {
-    fn load(numbers: &[f32; NUMBERS]) -> Self {
+    pub fn load(numbers: &[f32; NUMBERS]) -> Self {
         let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = numbers.map(f64::from);
         Self { position: [a, b, c, d, e, f], normal: [g, h, i], along_x: [j, k, l], along_y: [m, n, o] }
     }
 
-    fn store(&self, numbers: &mut [f32; NUMBERS]) {
+    pub fn store(&self, numbers: &mut [f32; NUMBERS]) {
         let all = self.position.iter().chain(&self.normal).chain(&self.along_x).chain(&self.along_y);
         for (slot, &value) in numbers.iter_mut().zip(all) {
             *slot = value as f32;
@@ -74,7 +76,7 @@ impl Moments {
         count
     }
 
-    fn add_pixel(&mut self, x: f64, y: f64, n: [f64; 3]) {
+    pub fn add_pixel(&mut self, x: f64, y: f64, n: [f64; 3]) {
         for (sum, term) in self.position.iter_mut().zip([1.0, x, y, x * x, x * y, y * y]) {
             *sum += term;
         }
@@ -142,33 +144,44 @@ impl Moments {
     }
 }
 
-/// How a picture is cut into cells: squares of `side` pixels, a multiple of [`SIDE`], from its top left corner. The last ones
+/// How a picture is cut into cells: squares of a multiple of [`SIDE`] pixels, from its top left corner. The last ones
 /// may reach beyond it; rows and columns that do not fill a square of [`SIDE`] are left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Grid {
-    pub width: usize,
-    pub height: usize,
-    pub side: usize,
+    width: usize,
+    height: usize,
+    /// How many of the smallest squares lie along a side.
+    times: NonZero<usize>,
 }
 
 impl Grid {
-    /// The smallest squares for which `room` numbers are enough while their sums are taken, and `later` ones after
-    /// that; `None` where there is nothing to cut.
-    pub fn finest(width: usize, height: usize, room: usize, later: usize) -> Option<Self> {
-        let (columns, rows) = (width / SIDE, height / SIDE);
-        let most = (room / SUMS).min(later / (NUMBERS + super::integrable::NUMBERS));
+    /// The smallest squares for which `room` numbers are enough; `None` where there is nothing to cut.
+    pub fn finest(width: usize, height: usize, room: usize) -> Option<Self> {
+        let (columns, rows, most) = (width / SIDE, height / SIDE, room / SUMS);
         if columns == 0 || rows == 0 || most == 0 {
             return None;
         }
-        let mut times = 1;
-        while columns.div_ceil(times) * rows.div_ceil(times) > most {
-            times += 1;
+        let mut grid = Self { width: columns, height: rows, times: NonZero::<usize>::MIN };
+        while grid.count() > most {
+            grid.times = grid.times.saturating_add(1);
+            let fill = grid.times.get() - 1;
+            (grid.width, grid.height) = ((columns + fill) / grid.times, (rows + fill) / grid.times);
         }
-        Some(Self { width: columns.div_ceil(times), height: rows.div_ceil(times), side: times * SIDE })
+        Some(grid)
+    }
+
+    /// Cells that can be merged to windows of every size.
+    pub const fn is_fine(&self) -> bool {
+        self.times.get() == 1
     }
 
     const fn count(&self) -> usize {
         self.width * self.height
+    }
+
+    /// Numbers of the cells and the windows that they are merged to.
+    pub const fn len(&self) -> usize {
+        self.count() * (NUMBERS + super::integrable::NUMBERS)
     }
 
     /// The numbers of the cells, and the sums that are only taken over the smallest ones: residuals and gradients.
@@ -188,34 +201,31 @@ impl Grid {
         numbers.iter_mut().take(self.count() * SUMS).for_each(|number| *number = 0.0);
     }
 
-    /// Adds the pixels of four windows, the first of whose rows is `y`; of these N = `root` rho.
+    /// Adds `len` columns of four rows, the top left pixel given: `bits` of them, whose N is `normal` of row and column.
+    #[inline]
     pub fn add(
         &self,
-        y: usize,
-        windows: &[Window; SIDE],
+        [x, y]: [usize; 2],
+        len: usize,
         bits: [u64; SIDE],
-        root: &Mat3,
+        normal: impl Fn(usize, usize) -> [f64; 3],
         numbers: &mut [f32],
     ) {
         if bits == [0; SIDE] {
             return;
         }
-        let ([first, ..], Some(mut room)) = (windows, self.split(numbers)) else { return };
-        for i in 0..first.len / SIDE {
-            let from = i * SIDE;
+        let Some(mut room) = self.split(numbers) else { return };
+        for from in (0..len / SIDE).map(|i| i * SIDE) {
             let nibbles = bits.map(|bits| bits >> from & ((1 << SIDE) - 1));
             if nibbles != [0; SIDE] {
-                let at = [first.x + from, y];
-                let index = at[1] / self.side * self.width + at[0] / self.side;
-                room.add(index, self.from_middle(at), &Small::of(windows, nibbles, from, root));
+                let small = Small::of(nibbles, |row, column| normal(row, from + column));
+                let (column, row) = ((x + from) / SIDE, y / SIDE);
+                // Where its middle lies from that of the cell.
+                let middle = 0.5 * (self.times.get() - 1) as f64;
+                let [dx, dy] = [column, row].map(|at| SIDE as f64 * ((at % self.times) as f64 - middle));
+                room.add(row / self.times * self.width + column / self.times, [dx, -dy], &small);
             }
         }
-    }
-
-    /// Where the middle of the smallest square at this pixel lies from that of its cell, x right and y up.
-    fn from_middle(&self, at: [usize; 2]) -> [f64; 2] {
-        let [x, y] = at.map(|at| (at % self.side) as f64 - 0.5 * (self.side - SIDE) as f64);
-        [x, -y]
     }
 }
 
@@ -227,9 +237,9 @@ struct Room<'w> {
 }
 
 impl Room<'_> {
-    /// Adds a smallest square to the cell that it lies in, its middle at `from_middle`.
-    fn add(&mut self, index: usize, from_middle: [f64; 2], small: &Small) {
-        let [dx, dy] = from_middle;
+    /// Adds a smallest square to the cell that it lies in, its middle (`dx`, `dy`) from the cell's, x right and y up.
+    #[inline(never)]
+    fn add(&mut self, index: usize, [dx, dy]: [f64; 2], small: &Small) {
         if let Some(cell) = self.cells.get_mut(index) {
             let mut sums = Moments::load(cell);
             sums.add(&small.sums, dx, dy);
@@ -261,15 +271,16 @@ struct Small {
 }
 
 impl Small {
-    /// From the given pixel of its four rows' windows.
-    fn of(windows: &[Window; SIDE], nibbles: [u64; SIDE], from: usize, root: &Mat3) -> Self {
+    /// Of the pixels that are set, whose N is `normal` of row and column.
+    #[inline]
+    fn of(nibbles: [u64; SIDE], normal: impl Fn(usize, usize) -> [f64; 3]) -> Self {
         const HALF: f64 = 0.5 * (SIDE as f64 - 1.0);
         let mut sums = Moments::default();
         let mut squares = [0.0; 6];
-        for ((row, window), bits) in windows.iter().enumerate().zip(nibbles) {
+        for (row, bits) in nibbles.into_iter().enumerate() {
             let y = HALF - row as f64;
             for_each_bit(bits, |i| {
-                let n = mat3::apply(root, window.pixel(from + i).map(f64::from));
+                let n = normal(row, i);
                 sums.add_pixel(i as f64 - HALF, y, n);
                 let [a, b, c] = n;
                 for (sum, term) in squares.iter_mut().zip([a * a, a * b, a * c, b * b, b * c, c * c]) {
@@ -277,6 +288,11 @@ impl Small {
                 }
             });
         }
+        Self::finish(sums, squares)
+    }
+
+    #[inline(never)]
+    fn finish(sums: Moments, squares: [f64; 6]) -> Self {
         let mut small = Self { sums, residual: None, gradient: None };
         let count = sums.count();
         if count >= SMALLEST_COUNTS[0]
@@ -347,8 +363,8 @@ impl<'w> Cells<'w> {
     /// The cells of a grid, and what lies behind them: residuals, gradients and scratch.
     pub fn of(grid: &Grid, numbers: &'w mut [f32]) -> Option<(Self, &'w mut [f32])> {
         let (numbers, rest) = numbers.split_at_mut_checked(grid.count() * NUMBERS)?;
-        let Grid { width, height, side } = *grid;
-        Some((Self { numbers, width, height, side }, rest))
+        let Grid { width, height, times } = *grid;
+        Some((Self { numbers, width, height, side: SIDE * times.get() }, rest))
     }
 
     /// The sum of gradients over the smallest squares of a cell, each times its inliers, from what lies behind the cells.
@@ -391,6 +407,23 @@ impl<'w> Cells<'w> {
     /// Cells in a row, and rows.
     pub const fn size(&self) -> [usize; 2] {
         [self.width, self.height]
+    }
+
+    /// What lies around all inliers; `None` without any.
+    pub fn area(&self) -> Option<Area> {
+        let (mut low, mut high) = ([u32::MAX; 2], [0; 2]);
+        for y in 0..self.height {
+            for x in 0..self.width {
+                if self.at(x, y).count() > 0.0 {
+                    for ((low, high), at) in low.iter_mut().zip(&mut high).zip([x, y]) {
+                        *low = (at as u32).min(*low);
+                        *high = (at as u32 + 1).max(*high);
+                    }
+                }
+            }
+        }
+        let ([x0, y0], [x1, y1], side) = (low, high, self.side as u32);
+        (x1 > x0).then(|| Area { from: [x0 * side, y0 * side], size: [(x1 - x0) * side, (y1 - y0) * side] })
     }
 
     /// Pixels along the side of a cell.
@@ -455,4 +488,67 @@ fn sum_of_places(bits: u64) -> u64 {
         0xffff_ffff_0000_0000,
     ];
     DIGITS.iter().enumerate().map(|(digit, mask)| u64::from((bits & mask).count_ones()) << digit).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    /// A picture of random normals in so many cells at most.
+    fn summed(width: usize, height: usize, cells: usize) -> (Grid, std::vec::Vec<f32>) {
+        let mut rng = Rng::new(5);
+        let normals: std::vec::Vec<[f64; 3]> =
+            (0..width * height).map(|_| [0.3, 0.5, 2.0].map(|middle| middle + 0.1 * rng.unit())).collect();
+        let holes: std::vec::Vec<u64> = (0..height).map(|_| rng.next_u64() | rng.next_u64()).collect();
+        let mut numbers = std::vec![f32::NAN; cells * SUMS];
+        let grid = Grid::finest(width, height, numbers.len()).unwrap();
+        grid.clear(&mut numbers);
+        for y in (0..height / SIDE * SIDE).step_by(SIDE) {
+            let bits = [0, 1, 2, 3].map(|row| holes[y + row]);
+            grid.add([0, y], width, bits, |row, column| normals[(y + row) * width + column], &mut numbers);
+        }
+        (grid, numbers)
+    }
+
+    #[test]
+    fn large_cells_are_merged_small_ones() {
+        let (fine, mut fine_numbers) = summed(64, 40, 1000);
+        let (coarse, mut coarse_numbers) = summed(64, 40, 40);
+        assert!(fine.is_fine() && !coarse.is_fine());
+        let (mut cells, _) = Cells::of(&fine, &mut fine_numbers).unwrap();
+        assert!(cells.merge());
+        let (expected, _) = Cells::of(&coarse, &mut coarse_numbers).unwrap();
+        assert_eq!((cells.size(), cells.side()), ([8, 5], 8));
+        assert_eq!((expected.size(), expected.side()), ([8, 5], 8));
+        for (x, y) in (0..5).flat_map(|y| (0..8).map(move |x| (x, y))) {
+            assert_eq!(cells.middle(x, y), expected.middle(x, y));
+            let (a, b) = (cells.at(x, y), expected.at(x, y));
+            assert_eq!(a.position, b.position);
+            for (a, b) in a.normal.iter().zip(b.normal).chain(a.along_x.iter().zip(b.along_x)) {
+                assert!((a - b).abs() < 1e-3, "{a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn noise_and_gradients_do_not_depend_on_the_cells() {
+        let mut noises = std::vec::Vec::new();
+        let mut gradients = std::vec::Vec::new();
+        for room in [1000, 40, 3, 1] {
+            let (grid, mut numbers) = summed(64, 40, room);
+            let (cells, rest) = Cells::of(&grid, &mut numbers).unwrap();
+            let [width, height] = cells.size();
+            assert!(width * height <= room);
+            let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+            gradients.push(all.map(|(x, y)| cells.gradient(x, y, rest)[0][0]).sum::<f64>());
+            noises.push(cells.noise(&mut std::vec::Vec::from(&*rest)).unwrap()[0][0]);
+        }
+        // Uniform over 0.1; two more pixels than parameters make one square as good as another.
+        let [first, .., last] = &gradients[..] else { panic!() };
+        assert!((first - last).abs() < 1e-3, "{gradients:?}");
+        for noise in noises {
+            assert!((noise / (0.01 / 12.0) - 1.0).abs() < 0.1, "{noise}");
+        }
+    }
 }

@@ -9,10 +9,10 @@
 //! than noise, colors change over the picture for other reasons than orientation (lights that are near, interreflection),
 //! in s as much as along N. Such errors do not average out, and the more of s they explain the less it counts.
 
-use super::cells::Cells;
+use super::cells::{Cells, Moments, Plane};
 use super::form::{Form, flat};
 use super::outward::{Outward, PARTS, Parts};
-use super::search::{derivatives, minimum, starts};
+use super::search::{derivatives, minimum};
 use super::{inverse, trace};
 use crate::mat3::{self, Mat3};
 use crate::orthogonal::polish::polish;
@@ -20,7 +20,7 @@ use crate::select::{kth_smallest, median_rank};
 
 /// Numbers of a window, and two of scratch.
 pub(super) const NUMBERS: usize = RECORD + 2;
-const RECORD: usize = 14;
+pub(super) const RECORD: usize = 14;
 
 /// A window counts if this share of its pixels are inliers.
 const SMALLEST_FILL: f64 = 0.6;
@@ -52,7 +52,7 @@ pub(super) struct Integrable {
     noise: Form,
     model: f64,
     factor: f64,
-    count: usize,
+    independent: f64,
 }
 
 /// One window.
@@ -78,14 +78,13 @@ impl Record {
         Self { v: [a, b, c, d, e, f], variance: [g, h, i], middle: [j, k, l], radial: m, part }
     }
 
-    fn store(&self, numbers: &mut [f32; RECORD]) {
-        let all = self.v.iter().chain(&self.variance).chain(&self.middle).chain([&self.radial]);
-        for (slot, &value) in numbers.iter_mut().zip(all) {
-            *slot = value as f32;
-        }
-        let [.., part] = numbers;
+    fn numbers(&self) -> [f32; RECORD] {
+        let ([a, b, c, d, e, f], [g, h, i], [j, k, l]) = (self.v, self.variance, self.middle);
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m] =
+            [a, b, c, d, e, f, g, h, i, j, k, l, self.radial].map(|number| number as f32);
         // A small number: bits that are kept, and no rounding.
-        *part = f32::from_bits(self.part as u32);
+        let part = f32::from_bits(self.part as u32);
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, part]
     }
 
     /// The noise of N x `N_x` for a variance of 1: `[N]x C [N]x^T`.
@@ -113,24 +112,23 @@ impl Record {
 }
 
 impl Integrable {
-    /// The windows of two by two cells, and the rows that these and `outward` say together, beginning at `rows`; `None`
-    /// where there are too few. `least_radial` is the least systematic error over windows so far: in larger ones curvature looks
-    /// like it. `scratch` holds [`NUMBERS`] for every cell.
+    /// What windows say, each as `independent` ones beside each other, and the rows that these and `outward` say together,
+    /// beginning at `rows`; `None` where there are too few. `least_radial` is the least systematic error over windows so
+    /// far: in larger ones curvature looks like it. `scratch` holds two numbers for every window.
     pub fn of(
-        cells: &Cells,
+        (records, independent): (&[[f32; RECORD]], f64),
         noise: &Mat3,
         outward: &Outward,
         rows: Mat3,
         least_radial: &mut f64,
         scratch: &mut [f32],
     ) -> Option<(Self, Mat3)> {
-        let [width, height] = cells.size();
-        let room = width * height;
-        let (records, rest) = scratch.split_at_mut_checked(room * RECORD)?;
-        let (squares, variances) = rest.split_at_mut_checked(room)?;
-        let (records, _) = records.as_chunks_mut::<RECORD>();
-        let n = collect(cells, records)?;
-        let records = records.get(..n)?;
+        let n = records.len();
+        if n < SMALLEST_COUNT {
+            return None;
+        }
+        let (squares, variances) = scratch.split_at_mut_checked(n)?;
+        let independent = independent * n as f64;
 
         let radial = excess(
             records,
@@ -140,25 +138,23 @@ impl Integrable {
         )?;
         *least_radial = least_radial.min(radial.model);
         let prior = |rows: &Mat3| outward.cost(rows);
-        // Windows overlap fourfold.
         let mut form =
-            Self { squares: Form::ZERO, noise: Form::ZERO, model: 0.0, factor: 0.125 * n as f64, count: n };
+            Self { squares: Form::ZERO, noise: Form::ZERO, model: 0.0, factor: independent, independent };
         let mut rows = rows;
+        let mut parts = Sums { squares: [Form::ZERO; PARTS * PARTS], noise: [Form::ZERO; PARTS * PARTS] };
         for round in 0..ROUNDS {
             let of = |record: &Record| {
                 let s = record.s(&rows);
                 [s * s, record.variance_at(noise, &rows)]
             };
             let model = excess(records, of, MEDIAN_OF_ONE, [&mut *squares, &mut *variances])?;
-            let parts = weigh(records, noise, &rows, model.model, round > 0);
+            parts.weigh(records, noise, &rows, model.model, round > 0);
             form.squares = sum(&parts.squares);
             form.noise = sum(&parts.noise);
             form.model = (form.squares.at(&rows) - form.noise.at(&rows)).max(0.0);
             let cost = |rows: &Mat3| form.cost(rows) + prior(rows);
             rows = if round == 0 {
-                let mut from = starts();
-                from[0] = rows;
-                minimum(&from, cost).rows
+                minimum([&rows, &mat3::IDENTITY], cost).rows
             } else {
                 polish(rows, cost(&rows), 120, cost).0
             };
@@ -179,43 +175,41 @@ impl Integrable {
     }
 }
 
-/// Writes a record of every window that is full enough; how many they are, `None` where they are too few.
-fn collect(cells: &Cells, records: &mut [[f32; RECORD]]) -> Option<usize> {
+/// The numbers of a window of `side` pixels, if it is full enough.
+pub(super) fn record(window: &Moments, side: f64, part: usize) -> Option<[f32; RECORD]> {
+    if window.count() < SMALLEST_FILL * side * side {
+        return None;
+    }
+    let Plane { middle, gradient: [along_x, along_y], variance } = window.plane()?;
+    let ([a, b, c], [d, e, f]) = (mat3::cross(middle, along_x), mat3::cross(middle, along_y));
+    let length = mat3::dot(middle, middle);
+    let (p, q) = (mat3::dot(middle, along_x), mat3::dot(middle, along_y));
+    (length > 0.0)
+        .then(|| Record { v: [a, b, c, d, e, f], variance, middle, radial: p * p + q * q, part }.numbers())
+}
+
+/// The windows of two by two cells, and room for two numbers of each; `None` without any.
+pub(super) fn collect<'r>(
+    cells: &Cells,
+    scratch: &'r mut [f32],
+) -> Option<(&'r [[f32; RECORD]], &'r mut [f32])> {
     let [width, height] = cells.size();
+    let (records, scratch) = scratch.split_at_mut_checked(width * height * RECORD)?;
+    let (records, _) = records.as_chunks_mut();
     let parts = Parts::around(cells)?;
-    let side = 2.0 * cells.side() as f64;
     let mut n = 0;
     for y in 0..height.saturating_sub(1) {
         for x in 0..width.saturating_sub(1) {
-            let window = cells.two_by_two(x, y);
-            if window.count() < SMALLEST_FILL * side * side {
-                continue;
-            }
-            let Some(plane) = window.plane() else { continue };
-            let [along_x, along_y] = plane.gradient;
-            let ([a, b, c], [d, e, f]) =
-                (mat3::cross(plane.middle, along_x), mat3::cross(plane.middle, along_y));
-            let length = mat3::dot(plane.middle, plane.middle);
-            let (p, q) = (mat3::dot(plane.middle, along_x), mat3::dot(plane.middle, along_y));
-            if length.is_nan() || length <= 0.0 {
-                continue;
-            }
             let part = parts.of(cells.middle(x, y));
-            let radial = p * p + q * q;
-            let record = Record {
-                v: [a, b, c, d, e, f],
-                variance: plane.variance,
-                middle: plane.middle,
-                radial,
-                part,
-            };
-            if let Some(slot) = records.get_mut(n) {
-                record.store(slot);
+            if let Some(made) = record(&cells.two_by_two(x, y), 2.0 * cells.side() as f64, part)
+                && let Some(slot) = records.get_mut(n)
+            {
+                *slot = made;
                 n += 1;
             }
         }
     }
-    (n >= SMALLEST_COUNT).then_some(n)
+    Some((records.get(..n)?, scratch.get_mut(..2 * n)?))
 }
 
 /// What the median of a square is above the median of the variance that noise gives it, and that variance.
@@ -256,35 +250,36 @@ fn sum(forms: &[Form]) -> Form {
     total
 }
 
-/// The sums with the weights that windows have at `rows`; `robust` ones where s^2 is too large for its variance.
-fn weigh(records: &[[f32; RECORD]], noise: &Mat3, rows: &Mat3, model: f64, robust: bool) -> Sums {
-    let mut sums = Sums { squares: [Form::ZERO; PARTS * PARTS], noise: [Form::ZERO; PARTS * PARTS] };
-    for record in records.iter().map(Record::load) {
-        let expected = record.variance_at(noise, rows) + model;
-        if expected.is_nan() || expected <= 0.0 {
-            continue;
-        }
-        let mut weight = 1.0 / expected;
-        if robust {
-            let s = record.s(rows);
-            let excess = 1.0 + s * s / (CUT * expected);
-            weight /= excess * excess;
-        }
-        if let Some(form) = sums.squares.get_mut(record.part) {
-            form.add_square(&record.v, weight);
-        }
-        if let Some(form) = sums.noise.get_mut(record.part) {
-            form.add_noise(&record.cross_noise(noise), record.variance, weight);
+impl Sums {
+    /// The sums with the weights that windows have at `rows`; `robust` ones where s^2 is too large for its variance.
+    #[inline(never)]
+    fn weigh(&mut self, records: &[[f32; RECORD]], noise: &Mat3, rows: &Mat3, model: f64, robust: bool) {
+        self.squares.iter_mut().chain(&mut self.noise).for_each(|form| *form = Form::ZERO);
+        for record in records.iter().map(Record::load) {
+            let expected = record.variance_at(noise, rows) + model;
+            if expected.is_nan() || expected <= 0.0 {
+                continue;
+            }
+            let mut weight = 1.0 / expected;
+            if robust {
+                let s = record.s(rows);
+                let excess = 1.0 + s * s / (CUT * expected);
+                weight /= excess * excess;
+            }
+            if let Some(form) = self.squares.get_mut(record.part) {
+                form.add_square(&record.v, weight);
+            }
+            if let Some(form) = self.noise.get_mut(record.part) {
+                form.add_noise(&record.cross_noise(noise), record.variance, weight);
+            }
         }
     }
-    sums
-}
 
-impl Sums {
     /// The factor that makes a log likelihood of the ratio of `form` near its minimum `rows`: 3 over the trace of
     /// H^-1 G, with H its second derivatives and G the scatter of its gradient, but no more than independent windows would
     /// give, and less where errors are systematic:
     /// `radial` is the share of s^2 that they are.
+    #[inline(never)]
     fn information(&self, form: &Integrable, rows: &Mat3, radial: f64) -> Option<f64> {
         let expected = form.noise.at(rows) + form.model;
         if expected.is_nan() || expected <= 0.0 {
@@ -316,8 +311,7 @@ impl Sums {
             }
         }
         let least = 1e-6 * trace(&hessian).abs().max(f64::MIN_POSITIVE);
-        // Windows overlap fourfold.
-        let white = 1.0 / (0.125 * form.count as f64);
+        let white = 1.0 / form.independent;
         let random = NEIGHBOURS * trace(&mat3::multiply(&inverse(&hessian, least), &scatter)) / 3.0;
         let share = radial.max(1e-3);
         let systematic = 2.0 * share * share * share / SYSTEMATIC_WINDOWS;

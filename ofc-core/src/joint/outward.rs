@@ -87,15 +87,26 @@ pub(super) struct Outward {
     normal: [f64; 3],
     /// The mean position of the inliers from the middle of the whole surface, of which parts may be shaded.
     from_middle: [f64; 2],
-    /// The sums over each part, about that mean position.
-    parts: [Moments; PARTS * PARTS],
+    parts: [Part; PARTS * PARTS],
+}
+
+/// A part of the surface.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    count: f32,
+    /// Its mean position from that of all inliers.
+    position: [f32; 2],
+    /// The mean of N.
+    normal: [f32; 3],
 }
 
 /// The parts of a picture: where the inliers lie, cut into [`PARTS`] by [`PARTS`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parts {
-    from: [f64; 2],
-    size: [f64; 2],
+    /// Left and lower border.
+    pub from: [f64; 2],
+    /// Width and height.
+    pub size: [f64; 2],
 }
 
 impl Parts {
@@ -182,12 +193,15 @@ impl Outward {
         let slopes = slopes?;
         let [n, x, y, ..] = total.position;
         let ([x, y], [wx, wy]) = ([x / n, y / n], whole);
-        for part in &mut moments {
-            let sums = *part;
-            *part = Moments::default();
-            part.add(&sums, -x, -y);
-        }
-        Some(Self { slopes, normal: total.normal, from_middle: [x0 + x - wx, y0 + y - wy], parts: moments })
+        let parts = moments.map(|part| {
+            let [n, right, up, ..] = part.position;
+            Part {
+                count: n as f32,
+                position: [right / n - x, up / n - y].map(|mean| mean as f32),
+                normal: part.normal.map(|sum| (sum / n) as f32),
+            }
+        });
+        Some(Self { slopes, normal: total.normal, from_middle: [x0 + x - wx, y0 + y - wy], parts })
     }
 
     /// The negative log likelihood of `rows`.
@@ -206,12 +220,13 @@ impl Outward {
     pub fn convex(&self, rows: Mat3) -> (Mat3, f64) {
         let [r1, r2, r3] = rows;
         let (mut sum, mut absolute) = (0.0, 0.0);
-        for part in &self.parts {
-            let n3 = mat3::dot(r3, part.normal) / part.count();
+        for part in self.parts.iter().filter(|part| part.count > 0.0) {
+            let ([x, y], normal) = (part.position.map(f64::from), part.normal.map(f64::from));
+            let n3 = mat3::dot(r3, normal);
             if n3 > SMALLEST_N3 {
-                let outward = (mat3::dot(r1, part.along_x) + mat3::dot(r2, part.along_y)) / n3;
-                sum += outward;
-                absolute += outward.abs();
+                let outward = (x * mat3::dot(r1, normal) + y * mat3::dot(r2, normal)) / n3;
+                sum += f64::from(part.count) * outward;
+                absolute += f64::from(part.count) * outward.abs();
             }
         }
         let dome = if absolute > 0.0 { sum / absolute } else { 0.0 };

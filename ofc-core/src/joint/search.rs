@@ -5,8 +5,8 @@ use crate::mat3::{self, Mat3};
 use crate::orthogonal::polish::{polish, rotation};
 use libm::acos;
 
-/// Rotations that every search starts from: 60, spread over all of them, after two for the caller's own.
-pub(super) const STARTS: usize = 62;
+/// Rotations that every search starts from: 60, spread over all of them, after two of the caller's own.
+const STARTS: usize = 62;
 
 /// Starts that are followed to their minimum.
 const FOLLOWED: usize = 8;
@@ -21,42 +21,41 @@ pub(super) struct Minimum {
     pub second: f64,
 }
 
-/// Frames about the line of sight and tipped from it; the first two are the same and may be replaced.
-pub(super) fn starts() -> [Mat3; STARTS] {
-    let mut starts = [mat3::IDENTITY; STARTS];
-    for (i, start) in starts.iter_mut().enumerate().skip(2) {
-        let (turn, rest) = ((i % 5) as f64, i / 5);
-        let (tip, toward) = ((rest % 3) as f64, (rest / 3) as f64);
-        let about = rotation([0.0, 0.0, 1.256 * turn]);
-        let tipped = rotation([0.7 * tip, 0.0, 0.0]);
-        let direction = rotation([0.0, 0.0, 1.57 * toward + 0.3 * tip]);
-        *start = mat3::multiply(&mat3::multiply(&about, &tipped), &direction);
-    }
-    starts
+/// A frame about the line of sight and tipped from it.
+#[inline(never)]
+fn start(i: usize) -> Mat3 {
+    let (turn, rest) = ((i % 5) as f64, i / 5);
+    let (tip, toward) = ((rest % 3) as f64, (rest / 3) as f64);
+    let about = rotation([0.0, 0.0, 1.256 * turn]);
+    let tipped = rotation([0.7 * tip, 0.0, 0.0]);
+    let direction = rotation([0.0, 0.0, 1.57 * toward + 0.3 * tip]);
+    mat3::multiply(&mat3::multiply(&about, &tipped), &direction)
 }
 
-/// The least cost that the most promising starts lead to.
-pub(super) fn minimum(starts: &[Mat3], cost: impl Fn(&Mat3) -> f64) -> Minimum {
+/// The least cost that the most promising starts lead to, the two given ones among them.
+#[inline(never)]
+pub(super) fn minimum(own: [&Mat3; 2], cost: impl Fn(&Mat3) -> f64) -> Minimum {
     let mut promising = [(f64::INFINITY, mat3::IDENTITY); FOLLOWED];
-    for start in starts {
-        let mut entry = (cost(start), *start);
+    for i in 0..STARTS {
+        let start = own.get(i).map_or_else(|| start(i), |own| **own);
+        let mut entry = (cost(&start), start);
         for slot in &mut promising {
             if entry.0 < slot.0 {
                 core::mem::swap(slot, &mut entry);
             }
         }
     }
-    let mut found = promising;
     let mut best = (f64::INFINITY, mat3::IDENTITY);
-    for ((value, rows), (from, start)) in found.iter_mut().zip(promising) {
-        (*rows, _) = polish(start, from, EVALUATIONS, &cost);
-        *value = cost(rows);
-        if *value < best.0 {
-            best = (*value, *rows);
+    for found in &mut promising {
+        let (from, start) = *found;
+        let (rows, _) = polish(start, from, EVALUATIONS, &cost);
+        *found = (cost(&rows), rows);
+        if found.0 < best.0 {
+            best = *found;
         }
     }
     let elsewhere =
-        found.iter().filter(|(_, rows)| angle(rows, &best.1) > APART).map(|(value, _)| value - best.0);
+        promising.iter().filter(|(_, rows)| angle(rows, &best.1) > APART).map(|(value, _)| value - best.0);
     Minimum { rows: best.1, second: elsewhere.fold(f64::INFINITY, f64::min) }
 }
 
@@ -89,6 +88,7 @@ pub(super) fn hessian(rows: &Mat3, cost: impl Fn(&Mat3) -> f64) -> Mat3 {
 }
 
 /// First and second derivatives.
+#[inline(never)]
 pub(super) fn derivatives(rows: &Mat3, cost: impl Fn(&Mat3) -> f64) -> ([f64; 3], Mat3) {
     /// The angle of the differences.
     const STEP: f64 = 2e-3;

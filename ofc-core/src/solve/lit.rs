@@ -2,9 +2,10 @@
 
 use super::{Params, Solution};
 use crate::ellipsoid::Coefficients;
-use crate::image::{Image, Usable};
+use crate::image::Usable;
 use crate::inliers::Inliers;
 use crate::lmeds::{self, Fit};
+use crate::pixels::Pixels;
 use crate::shadows;
 
 /// Times that shadows are looked for: an ellipsoid that they no longer bend shows more of them.
@@ -14,41 +15,44 @@ const ROUNDS: usize = 2;
 const SMALLEST_SHARE: usize = 3;
 
 impl Solution {
-    /// Looks for shadows, and where there are any replaces the fit, which is there, and the usable pixels.
+    /// Looks for shadows, and where there are any replaces the fit, which is there, and the usable pixels. Of a sample, the
+    /// census says how many that makes of all.
     ///
     /// # Scratch
-    /// As the fit.
+    /// Two `f32` a pixel.
     #[inline(never)]
-    pub(super) fn leave_out_shadows(&mut self, image: &Image, params: &Params, workspace: &mut [f32]) {
+    pub(crate) fn leave_out_shadows(&mut self, pixels: &impl Pixels, params: &Params, workspace: &mut [f32]) {
         let count = self.fit.as_ref().map_or(0, |fit| fit.usable);
         let mut left = count;
         for _ in 0..ROUNDS {
-            let Some(fewer) = self.leave_out_faces(image, count, &params.lmeds, workspace) else { break };
+            let Some(fewer) = self.leave_out_faces(pixels, count, &params.lmeds, workspace) else { break };
             left = fewer;
         }
-        self.census.usable = left;
-        self.census.shaded = count - left;
+        let usable = self.census.usable;
+        self.census.shaded = ((count - left) as u64 * usable as u64 / count.max(1) as u64) as usize;
+        self.census.usable = usable - self.census.shaded;
     }
 
     /// One round over the `count` pixels that are usable but for shadows: how many are lit; `None`, with nothing done, where
     /// there are no shadows.
     fn leave_out_faces(
         &mut self,
-        image: &Image,
+        pixels: &impl Pixels,
         count: usize,
         params: &lmeds::Params,
         workspace: &mut [f32],
     ) -> Option<usize> {
         let fit = self.fit.as_ref()?;
         let usable = Usable::below(self.inliers.usable.saturation);
-        let shadows =
-            shadows::find(image, usable, count, fit.band, fit.noise_deviation, params.seed, workspace)?;
+        let room = workspace.get_mut(..2 * count)?;
+        let shadows = shadows::find(pixels, usable, count, fit.band, fit.noise_deviation, params.seed, room)?;
         let (z, mut refit) = (fit.z(), None);
         let lit = Usable { shadows, ..usable };
-        let mut left = self.refit(image, lit, z, params, workspace, &mut refit)?;
-        let confirmed = Usable { shadows: shadows.confirmed(image, usable, refit.as_ref()?.band)?, ..usable };
+        let mut left = self.refit(pixels, lit, z, params, workspace, &mut refit)?;
+        let confirmed =
+            Usable { shadows: shadows.confirmed(pixels, usable, refit.as_ref()?.band)?, ..usable };
         if confirmed != lit {
-            left = self.refit(image, confirmed, z, params, workspace, &mut refit)?;
+            left = self.refit(pixels, confirmed, z, params, workspace, &mut refit)?;
         }
         if SMALLEST_SHARE * left < count {
             return None;
@@ -62,14 +66,14 @@ impl Solution {
     #[inline(never)]
     fn refit(
         &self,
-        image: &Image,
+        pixels: &impl Pixels,
         usable: Usable,
         z: Coefficients,
         params: &lmeds::Params,
         workspace: &mut [f32],
         out: &mut Option<Fit>,
     ) -> Option<usize> {
-        let count = Inliers::all(usable).count(image);
+        let count = Inliers::all(usable).count(pixels);
         let scale = lmeds::reciprocal_power_of_two(self.census.largest);
         if count < lmeds::MIN_PIXELS {
             return None;
@@ -78,7 +82,7 @@ impl Solution {
         let mut z = z;
         for _ in 0..2 {
             let scaled = z.map(|c| c / (scale * scale));
-            lmeds::judge::<true>(image, usable, count, scale, Some(scaled), params, workspace, out).ok()?;
+            lmeds::judge::<true>(pixels, usable, count, scale, Some(scaled), params, workspace, out).ok()?;
             z = out.as_ref()?.z();
         }
         Some(count)

@@ -1,12 +1,12 @@
-//! The three passes of a cold start.
+//! The passes of a cold start, on the paper's road.
 
 use super::rows::Rows;
 use super::strata::{Sampled, Slots, Strata};
-use super::{Memory, Pass, State, StreamError, room};
+use super::{FULL, Held, Memory, Pass, State, StreamError, room};
 use crate::cells::{Block, for_each_block_of_rows};
-use crate::constrained_slant::{self, Candidates, SlantRoot};
+use crate::constrained_slant::{self, Candidates, MAX_CANDIDATES, SlantRoot};
 use crate::ellipsoid::Coefficients;
-use crate::image::{Census, Image, WINDOW, Window, for_each_bit};
+use crate::image::{Census, Image, Usable, WINDOW, Window, for_each_bit};
 use crate::inliers::Inliers;
 use crate::integrability;
 use crate::lmeds::{self, FitError, Method};
@@ -26,7 +26,8 @@ impl State {
     #[inline(never)]
     pub(super) fn row_colors(&mut self, y: usize, row: &Image, memory: &mut Memory) {
         let Some((mut slots, _)) = self.slots(memory) else { return };
-        let usable = self.usable();
+        // The shadows are those of a model that this frame may replace.
+        let usable = Usable::below(self.usable().saturation);
         row.for_each_window(|window| {
             let bits = usable.count_window(window, &mut self.census);
             let (sum, count) = &mut self.second_differences;
@@ -55,7 +56,8 @@ impl State {
         let found = self.search(memory);
         let fit = self.fit(found, memory);
         self.model(fit, memory).map_err(StreamError::Fit)?;
-        self.go_on(self.solution.outcome == Outcome::NoTilt, Pass::Tilts);
+        let next = if FULL && self.params.solve.is_joint() { Pass::Outward } else { Pass::Tilts };
+        self.go_on(self.solution.outcome == Outcome::NoTilt, next);
         Ok(())
     }
 
@@ -70,14 +72,18 @@ impl State {
             Method::LeastSquares => lmeds::least_squares(&pixels, usable, self.scale),
         };
         let fit = &mut self.solution.fit;
-        lmeds::judge::<false>(&pixels, usable, count, self.scale, scaled, params, workspace, fit)
+        lmeds::judge::<FULL>(&pixels, usable, count, self.scale, scaled, params, workspace, fit)
     }
 
     /// What follows from the fit.
     #[inline(never)]
     fn model(&mut self, fit: Result<(), FitError>, memory: &mut Memory) -> Result<(), FitError> {
         let (pixels, workspace) = self.sampled(memory).ok_or(FitError::WorkspaceTooShort)?;
-        self.solution.model(&pixels, fit, &self.params.solve, workspace)
+        let params = &self.params.solve;
+        if FULL && fit.is_ok() && params.reject_shadows {
+            self.solution.leave_out_shadows(&pixels, params, workspace);
+        }
+        self.solution.model(&pixels, fit, params, workspace)
     }
 
     /// The sample as pixels, and the room behind it.
@@ -205,23 +211,29 @@ impl State {
     fn orient_candidates(&mut self, roots: &Candidates) {
         if let (Some(Tilts { tilts, .. }), Some(ellipsoid)) = (self.solution.tilts, &self.solution.ellipsoid)
         {
-            for (inverse, root) in self.candidates.iter_mut().zip(roots) {
+            let (mut inverses, integrals) =
+                ([None; MAX_CANDIDATES], [integrability::Sum::default(); MAX_CANDIDATES]);
+            for (inverse, root) in inverses.iter_mut().zip(roots) {
                 let orientation = orient(ellipsoid, root.slants, tilts, &self.params.solve);
                 *inverse = (orientation.rank == 3).then_some(orientation.f_inverse);
             }
+            self.held = Held::Candidates { inverses, integrals };
         }
     }
 
     pub(super) fn begin_slants(&mut self) {
-        self.integrals.fill(integrability::Sum::default());
+        if let Held::Candidates { integrals, .. } = &mut self.held {
+            integrals.fill(integrability::Sum::default());
+        }
     }
 
     #[inline(never)]
     pub(super) fn row_slants(&mut self, y: usize, row: &Image, memory: &mut Memory) {
-        if y > 0 {
-            let (candidates, integrals) = (&self.candidates, &mut self.integrals);
+        if y > 0
+            && let Held::Candidates { inverses, integrals } = &mut self.held
+        {
             for_each_block_of_stream(self.width, &self.solution.inliers, Some(row), memory, |block| {
-                for (integral, inverse) in integrals.iter_mut().zip(candidates) {
+                for (integral, inverse) in integrals.iter_mut().zip(inverses.iter()) {
                     if let Some(inverse) = inverse {
                         integral.add(block, inverse);
                     }
@@ -233,8 +245,10 @@ impl State {
 
     #[inline(never)]
     pub(super) fn end_slants(&mut self) {
-        if let Some(choice) = &mut self.solution.choice {
-            let sums = self.candidates.iter().zip(&self.integrals);
+        if let (Some(choice), Held::Candidates { inverses, integrals }) =
+            (&mut self.solution.choice, &self.held)
+        {
+            let sums = inverses.iter().zip(integrals);
             for (candidate, (inverse, integral)) in choice.candidates.iter_mut().zip(sums) {
                 let mean = if inverse.is_some() { integral.mean() } else { None };
                 candidate.integral = mean.map_or(f64::INFINITY, |integral| integral.mean);
@@ -277,16 +291,16 @@ fn multiply(colors: &mut [&mut [f32]; 3], factor: f64) {
 #[inline(never)]
 fn keep(row: &Image, memory: &mut Memory) {
     let width = row.width();
-    row.for_each_window(|window| keep_window(width, window, window.masked, memory));
+    row.for_each_window(|window| keep_window(width, window, window.masked, memory.values));
 }
 
 /// The same of one window: red is NaN for all but `bits`.
 #[inline(never)]
-pub(super) fn keep_window(width: usize, window: &Window, bits: u64, memory: &mut Memory) {
+pub(super) fn keep_window(width: usize, window: &Window, bits: u64, values: &mut [f32]) {
     for (channel, color) in window.color.iter().enumerate() {
-        copy(memory.values.get_mut(channel * width + window.x..).unwrap_or_default(), color, window.len);
+        copy(values.get_mut(channel * width + window.x..).unwrap_or_default(), color, window.len);
     }
-    let red = memory.values.get_mut(window.x..).unwrap_or_default();
+    let red = values.get_mut(window.x..).unwrap_or_default();
     for_each_bit(first(window.len) & !bits, |i| {
         if let Some(out) = red.get_mut(i) {
             *out = f32::NAN;

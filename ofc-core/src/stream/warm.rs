@@ -8,7 +8,8 @@
 //! the inliers' residuals: as it was truncated before, so it is now.
 
 use super::cold::{keep_window, kept, slants_of};
-use super::{Memory, Pass, State};
+use super::orientation::nearest_rows;
+use super::{FULL, Memory, Pass, State};
 use crate::constrained_slant::{self, Candidates, SlantRoot};
 use crate::ellipsoid::{self, Coefficients};
 use crate::image::{Census, Image, Window, for_each_bit};
@@ -16,7 +17,7 @@ use crate::inliers::{Band, Inliers};
 use crate::lmeds::{MIN_PIXELS, Refit};
 use crate::mat3::{self, Mat3};
 use crate::regression::Moments;
-use crate::solve::{SMALLEST_NOISE_MARGIN, orient};
+use crate::solve::{SMALLEST_NOISE_MARGIN, orient, oriented};
 use crate::tilt::{TiltEstimator, Tilts, pentland};
 use libm::{atan2, sqrt};
 
@@ -84,7 +85,7 @@ impl State {
                 inliers_above = above.masked & above.bits(|r, _, _| !r.is_nan());
             }
             self.differences.add_rows((&above, inliers_above), (window, inliers), &mut left);
-            keep_window(row.width(), window, inliers, memory);
+            keep_window(row.width(), window, inliers, memory.values);
         });
     }
 
@@ -110,6 +111,9 @@ impl State {
     /// Takes over what follows from C and the tilts, and says by how much the rows of F turned and grew.
     #[inline(never)]
     fn adopt_orientation(&mut self, form: &Coefficients, room: &mut [f32]) -> Option<([f64; 3], [f64; 3])> {
+        if FULL && self.solution.joint.is_some() {
+            return self.adopt_form(form);
+        }
         let tilts = match self.params.solve.tilts {
             TiltEstimator::Given(tilts) => Tilts::alone(tilts),
             _ => self.history.tilts_along_axes()?,
@@ -144,6 +148,25 @@ impl State {
         let change = change(&choice.orientation.f, &orientation.f);
         (choice.slants, choice.orientation) = (slants, orientation);
         (self.solution.ellipsoid, self.solution.tilts) = (Some(ellipsoid), Some(*tilts));
+        Some(change)
+    }
+
+    /// The same of C, the transformation kept; `None`, with nothing done, where F is rank-deficient.
+    #[inline(never)]
+    fn adopt_form(&mut self, form: &Coefficients) -> Option<([f64; 3], [f64; 3])> {
+        let ellipsoid = ellipsoid::decompose(form).ok()?;
+        let choice = self.solution.choice.as_mut()?;
+        let rows = nearest_rows(&choice.orientation.f_inverse, &ellipsoid);
+        let (tilts, new) = oriented(&rows, &ellipsoid, self.params.solve.rank_threshold);
+        if new.orientation.rank < 3 {
+            return None;
+        }
+        let change = change(&choice.orientation.f, &new.orientation.f);
+        *choice = new;
+        if let Some(joint) = &mut self.solution.joint {
+            joint.rows = rows;
+        }
+        (self.solution.ellipsoid, self.solution.tilts) = (Some(ellipsoid), Some(tilts));
         Some(change)
     }
 

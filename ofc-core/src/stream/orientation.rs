@@ -1,0 +1,122 @@
+//! The last passes of a cold start on the other road, and what a frame makes of its answer.
+
+use super::cold::keep_window;
+use super::{Held, Memory, Pass, State, rows_len};
+use crate::ellipsoid::Ellipsoid;
+use crate::image::{Image, Window};
+use crate::joint::{STRIP, Survey};
+use crate::mat3::{self, Mat3};
+
+impl State {
+    pub(super) fn begin_outward(&mut self, memory: &mut Memory) {
+        let room = memory.values.len().saturating_sub(rows_len(self.width));
+        let survey = Survey::begin(self.width, self.height, room, memory.values);
+        self.held = survey.map_or(Held::Nothing, Held::Survey);
+        self.inlier_count = 0;
+    }
+
+    #[inline(never)]
+    pub(super) fn row_outward(&mut self, y: usize, row: &Image, memory: &mut Memory) {
+        let inliers = &self.solution.inliers;
+        let kept = memory.values.len().saturating_sub(rows_len(self.width));
+        let Some((numbers, rows)) = memory.values.split_at_mut_checked(kept) else { return };
+        let above = y % STRIP;
+        row.for_each_window(|window| {
+            let bits = inliers.bits(window);
+            self.inlier_count += bits.count_ones() as usize;
+            let Held::Survey(survey) = &mut self.held else { return };
+            survey.see(window.x, y, inliers.usable.exposed(window));
+            if above + 1 < STRIP {
+                let row = rows.get_mut(above * 3 * self.width..).unwrap_or_default();
+                keep_window(self.width, window, bits, row);
+            } else if let Some(ellipsoid) = &self.solution.ellipsoid {
+                let strip = Strip { width: self.width, above: rows, last: window };
+                let at = [window.x, y - above];
+                let color = |row, i| strip.color(row, i);
+                survey.add(at, window.len, strip.bits(bits), &ellipsoid.root, color, numbers);
+            }
+        });
+    }
+
+    #[inline(never)]
+    pub(super) fn end_outward(&mut self, memory: &mut Memory) {
+        self.solution.inlier_count = self.inlier_count;
+        let Held::Survey(survey) = self.held else { return self.go_on(true, Pass::Tilts) };
+        let joint = survey.end(memory.values);
+        if self.solution.orient(joint, &self.params.solve) {
+            return self.go_on(false, Pass::Tilts);
+        }
+        let outlook = survey.outlook(memory.values);
+        let next = if outlook.is_some() { Pass::Integrability } else { Pass::Tilts };
+        self.held = outlook.map_or(Held::Nothing, Held::Outlook);
+        self.go_on(true, next);
+    }
+
+    pub(super) fn begin_integrability(&mut self, memory: &mut Memory) {
+        if let Held::Outlook(outlook) = &self.held {
+            outlook.begin(memory.values);
+        }
+    }
+
+    #[inline(never)]
+    pub(super) fn row_integrability(&mut self, y: usize, row: &Image, memory: &mut Memory) {
+        let inliers = &self.solution.inliers;
+        if let (Held::Outlook(outlook), Some(ellipsoid)) = (&self.held, &self.solution.ellipsoid) {
+            row.for_each_window(|window| {
+                outlook.add(y, window, inliers.bits(window), &ellipsoid.root, memory.values);
+            });
+        }
+    }
+
+    #[inline(never)]
+    pub(super) fn end_integrability(&mut self, memory: &mut Memory) {
+        let joint = match &self.held {
+            Held::Outlook(outlook) => outlook.end(memory.values),
+            _ => None,
+        };
+        let is_oriented = self.solution.orient(joint, &self.params.solve);
+        self.go_on(!is_oriented, Pass::Tilts);
+    }
+}
+
+/// The windows of four rows, one below the other: three that are kept, and the last.
+struct Strip<'a> {
+    width: usize,
+    above: &'a [f32],
+    last: &'a Window,
+}
+
+impl Strip<'_> {
+    fn color(&self, row: usize, i: usize) -> [f32; 3] {
+        if row + 1 == STRIP {
+            return self.last.pixel(i);
+        }
+        let x = self.last.x + i;
+        [0, 1, 2].map(|channel| {
+            let at = (3 * row + channel) * self.width + x;
+            self.above.get(at).copied().unwrap_or(f32::NAN)
+        })
+    }
+
+    /// Which pixels of the rows above are inliers, and those of the last one.
+    fn bits(&self, last: u64) -> [u64; STRIP] {
+        let mut bits = [last; STRIP];
+        for (row, bits) in bits.iter_mut().enumerate().take(STRIP - 1) {
+            *bits = 0;
+            for i in 0..self.last.len {
+                let [red, ..] = self.color(row, i);
+                *bits |= u64::from(!red.is_nan()) << i;
+            }
+        }
+        bits
+    }
+}
+
+/// The transformation of the normals of an ellipsoid that makes F nearest to an old one, whose inverse is given: of all
+/// orthogonal ones that which turns the new normals least from the old ones, where these look in all directions alike.
+#[inline(never)]
+pub(super) fn nearest_rows(f_inverse: &Mat3, ellipsoid: &Ellipsoid) -> Mat3 {
+    let (inverse, _) = mat3::pseudo_inverse(&mat3::svd(&ellipsoid.root), f64::EPSILON);
+    let svd = mat3::svd(&mat3::multiply(f_inverse, &inverse));
+    mat3::multiply(&mat3::transpose(&svd.left), &svd.right)
+}
