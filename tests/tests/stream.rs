@@ -8,7 +8,7 @@ use ofc_core::solve::{Outcome, Road, SlantFallback, Solution, solve, workspace_l
 use ofc_core::stream::{Change, Memory, Params, Pass, State, Stream, StreamError, places_len, values_len};
 use ofc_core::tilt::TiltEstimator;
 use ofc_tests::bust::bust;
-use ofc_tests::linear::{Matrix, degrees_between, length};
+use ofc_tests::linear::{Matrix, degrees_between, dot, length};
 use ofc_tests::photographs::load;
 use ofc_tests::scene::{self, median_error};
 use ofc_tests::scenes::{
@@ -237,6 +237,27 @@ fn parameters_reach_every_pass() {
         outcomes.contains(&Outcome::Solved) && outcomes.contains(&Outcome::NoConsistentSlants),
         "{outcomes:?}"
     );
+}
+
+#[test]
+fn frames_too_low_for_cells_take_the_paper_s_road() {
+    let strip = Scene::paint(400, 3, |x, y| {
+        let (a, b) = (0.004 * (x as f64 - 199.5), 0.6 * (1.0 - y as f64));
+        let normal = [a.sin(), a.cos() * b.sin(), a.cos() * b.cos()];
+        three_lights().map(|row| dot(row, normal))
+    });
+    let encoded = strip.with_noise(0.5, &mut Rng::new(8)).encode();
+    let image = encoded.image();
+    let mut camera = Camera::new(&image, sampling(1200));
+    assert_eq!(camera.frame(&image), Ok(Pass::Outward));
+    assert_eq!(camera.frame(&image), Ok(Pass::Tilts));
+    println!("{:?}", assert_same(&image, sampling(1200)));
+    // Nor is the other road taken where the tilts are given.
+    let mut params = sampling(1200);
+    params.solve.tilts = TiltEstimator::Given([0.3, 2.4, -1.8]);
+    let mut camera = Camera::new(&image, params);
+    assert_eq!(camera.frame(&image), Ok(Pass::Tilts));
+    println!("{:?}", assert_same(&image, params));
 }
 
 #[test]
