@@ -19,20 +19,23 @@
 
 mod cells;
 mod form;
+mod grid;
 mod integrable;
+mod moments;
 mod outward;
 mod search;
+mod survey;
 mod windows;
+
+pub(crate) use survey::{Outlook, STRIP, Survey, least_room};
 
 use crate::image::{Image, WINDOW, Window};
 use crate::inliers::Inliers;
 use crate::mat3::{self, Mat3};
-use cells::{Cells, Grid, MeanPosition};
 use heapless::Vec;
 use integrable::{Integrable, RECORD};
 use libm::sqrt;
 use outward::Outward;
-use windows::{Area, Windows};
 
 /// Which evidence decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,125 +87,7 @@ const LARGEST_DISTANCE: f64 = 5.0;
 /// How many `f32` [`estimate`] needs for a picture of this size: at most two a pixel.
 #[must_use]
 pub const fn workspace_len(width: usize, height: usize) -> usize {
-    cells::count(width, height).saturating_mul(cells::NUMBERS + integrable::NUMBERS)
-}
-
-/// Sums over the rows of a picture, four by four: all that its orientation is found from where there is room for cells of
-/// four pixels.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Survey {
-    grid: Grid,
-    whole: MeanPosition,
-}
-
-/// How many `f32` rows are summed into, at least, where they are too many for cells of four pixels.
-pub(crate) const fn least_room(width: usize, height: usize) -> usize {
-    /// Sixteen by twelve, for pictures of that shape.
-    const FEWEST: usize = 192;
-    let count = cells::count(width, height);
-    cells::SUMS * if count < FEWEST { count } else { FEWEST }
-}
-
-/// Rows that are summed at a time.
-pub(crate) const STRIP: usize = cells::SIDE;
-
-impl Survey {
-    /// Over a picture of this size, of cells as small as `room` numbers allow, which they are put into; `None` where there is
-    /// nothing to sum.
-    pub fn begin(width: usize, height: usize, room: usize, numbers: &mut [f32]) -> Option<Self> {
-        let grid = Grid::finest(width, height, room)?;
-        grid.clear(numbers);
-        Some(Self { grid, whole: MeanPosition::default() })
-    }
-
-    /// The pixels of a window that the surface is seen in, shaded ones among them.
-    pub fn see(&mut self, x: usize, y: usize, exposed: u64) {
-        self.whole.add(x, y, exposed);
-    }
-
-    /// Adds `len` columns of four rows, at the given pixel whose row is a multiple of four: their inliers, and `color` of row
-    /// and column.
-    #[inline]
-    pub fn add(
-        &self,
-        at: [usize; 2],
-        len: usize,
-        inliers: [u64; STRIP],
-        root: &Mat3,
-        color: impl Fn(usize, usize) -> [f32; 3],
-        numbers: &mut [f32],
-    ) {
-        let normal = |row, column| mat3::apply(root, color(row, column).map(f64::from));
-        self.grid.add(at, len, inliers, normal, numbers);
-    }
-
-    /// As [`estimate`], from the sums in the first of these numbers; `None` also where there was not room enough.
-    #[inline(never)]
-    pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
-        if !self.grid.is_fine() || numbers.len() < self.grid.len() {
-            return None;
-        }
-        let (mut cells, rest) = Cells::of(&self.grid, numbers)?;
-        let outward = Outward::of(&cells, rest, self.whole.position())?;
-        let noise = cells.noise(rest)?;
-        let mut estimate = Estimate::new(&outward, &noise);
-        for _ in WINDOW_SIZES {
-            let goes_on = integrable::collect(&cells, rest)
-                // They overlap fourfold.
-                .is_none_or(|(records, scratch)| estimate.admit((records, 0.125), scratch));
-            if !goes_on || !cells.merge() {
-                break;
-            }
-        }
-        Some(estimate.end())
-    }
-
-    /// What cells of any size say; windows of the area that they lie in are to be summed next.
-    #[inline(never)]
-    pub fn outlook(&self, numbers: &mut [f32]) -> Option<Outlook> {
-        let (cells, rest) = Cells::of(&self.grid, numbers)?;
-        let outward = Outward::of(&cells, rest, self.whole.position())?;
-        let noise = cells.noise(rest)?;
-        Some(Outlook { outward, noise, area: cells.area()? })
-    }
-}
-
-/// What is known before windows are summed, where there is not room for all of them.
-#[derive(Clone, Debug)]
-pub(crate) struct Outlook {
-    outward: Outward,
-    noise: Mat3,
-    area: Area,
-}
-
-impl Outlook {
-    /// Before the first row.
-    pub fn begin(&self, numbers: &mut [f32]) {
-        Windows::new(&self.area, numbers.len()).clear(numbers);
-    }
-
-    /// Adds the inliers of a window of row `y`.
-    pub fn add(&self, y: usize, window: &Window, inliers: u64, root: &Mat3, numbers: &mut [f32]) {
-        Windows::new(&self.area, numbers.len()).add(y, window, inliers, root, numbers);
-    }
-
-    /// As [`estimate`], from the windows that were summed.
-    #[inline(never)]
-    pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
-        let windows = Windows::new(&self.area, numbers.len());
-        let parts = self.area.parts();
-        let mut estimate = Estimate::new(&self.outward, &self.noise);
-        for spread in windows.spreads() {
-            let (own, scratch) = windows.split(spread, numbers)?;
-            let n =
-                spread.replace(own, |sums, at| integrable::record(sums, spread.size as f64, parts.of(at)));
-            let (records, _) = own.as_chunks();
-            if !estimate.admit((records.get(..n)?, spread.independent()), scratch.get_mut(..2 * n)?) {
-                break;
-            }
-        }
-        Some(estimate.end())
-    }
+    grid::count(width, height).saturating_mul(moments::NUMBERS + integrable::NUMBERS)
 }
 
 /// The transformation of the normals `root` rho of the inliers; `None` where they are too few or too scattered to say

@@ -9,8 +9,9 @@
 //! than noise, colors change over the picture for other reasons than orientation (lights that are near, interreflection),
 //! in s as much as along N. Such errors do not average out, and the more of s they explain the less it counts.
 
-use super::cells::{Cells, Moments, Plane};
+use super::cells::Cells;
 use super::form::{Form, flat};
+use super::moments::{Moments, Plane};
 use super::outward::{Outward, PARTS, Parts};
 use super::search::{derivatives, minimum};
 use super::{inverse, trace};

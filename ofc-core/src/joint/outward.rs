@@ -8,7 +8,8 @@
 //! Where a part of the surface is shaded the rest does not face the camera as a whole: n3 then falls with the distance from
 //! the middle of all of the surface, by its curvature.
 
-use super::cells::{Cells, Moments};
+use super::cells::Cells;
+use super::moments::Moments;
 use crate::mat3::{self, Mat3};
 use libm::sqrt;
 

@@ -1,7 +1,7 @@
 //! Windows where there is no room for all: of every size as many as there is, spread evenly over the surface.
 
-use super::cells::{Moments, NUMBERS};
 use super::integrable::RECORD;
+use super::moments::{Moments, NUMBERS};
 use super::outward::Parts;
 use crate::image::{Window, for_each_bit};
 use crate::mat3::{self, Mat3};

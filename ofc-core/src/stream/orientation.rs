@@ -62,9 +62,7 @@ impl State {
     pub(super) fn row_integrability(&mut self, y: usize, row: &Image, memory: &mut Memory) {
         let inliers = &self.solution.inliers;
         if let (Held::Outlook(outlook), Some(ellipsoid)) = (&self.held, &self.solution.ellipsoid) {
-            row.for_each_window(|window| {
-                outlook.add(y, window, inliers.bits(window), &ellipsoid.root, memory.values);
-            });
+            outlook.add(y, row, inliers, &ellipsoid.root, memory.values);
         }
     }
 

@@ -1,0 +1,115 @@
+//! Moments of N over squares of pixels, and the plane that they make.
+
+/// Numbers of [`Moments`].
+pub(super) const NUMBERS: usize = 15;
+
+/// Sums over the inliers of a square, x right and y up from its middle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Moments {
+    /// Of 1, x, y, x^2, x y, y^2.
+    pub position: [f64; 6],
+    /// Of N.
+    pub normal: [f64; 3],
+    /// Of x N.
+    pub along_x: [f64; 3],
+    /// Of y N.
+    pub along_y: [f64; 3],
+}
+
+/// The plane `N = middle + x N_x + y N_y` through the inliers of a square, about their mean position.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    /// The mean of N.
+    pub middle: [f64; 3],
+    /// `N_x` and `N_y`.
+    pub gradient: [[f64; 3]; 2],
+    /// The variances of `N_x` and `N_y` and their covariance (xx, xy, yy), as multiples of that of a pixel.
+    pub variance: [f64; 3],
+}
+
+impl Moments {
+    pub fn load(numbers: &[f32; NUMBERS]) -> Self {
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = numbers.map(f64::from);
+        Self { position: [a, b, c, d, e, f], normal: [g, h, i], along_x: [j, k, l], along_y: [m, n, o] }
+    }
+
+    pub fn store(&self, numbers: &mut [f32; NUMBERS]) {
+        let all = self.position.iter().chain(&self.normal).chain(&self.along_x).chain(&self.along_y);
+        for (slot, &value) in numbers.iter_mut().zip(all) {
+            *slot = value as f32;
+        }
+    }
+
+    /// Pixels that are inliers.
+    pub const fn count(&self) -> f64 {
+        let [count, ..] = self.position;
+        count
+    }
+
+    pub fn add_pixel(&mut self, x: f64, y: f64, n: [f64; 3]) {
+        for (sum, term) in self.position.iter_mut().zip([1.0, x, y, x * x, x * y, y * y]) {
+            *sum += term;
+        }
+        let sums = self.normal.iter_mut().zip(&mut self.along_x).zip(&mut self.along_y);
+        for (((sum, along_x), along_y), value) in sums.zip(n) {
+            *sum += value;
+            *along_x += x * value;
+            *along_y += y * value;
+        }
+    }
+
+    /// Adds the sums of a square whose middle lies at (`dx`, `dy`) from this one's.
+    pub fn add(&mut self, other: &Self, dx: f64, dy: f64) {
+        let [n, x, y, xx, xy, yy] = other.position;
+        let shifted = [
+            n,
+            x + dx * n,
+            y + dy * n,
+            xx + dx * (2.0 * x + dx * n),
+            xy + dx * y + dy * (x + dx * n),
+            yy + dy * (2.0 * y + dy * n),
+        ];
+        for (sum, term) in self.position.iter_mut().zip(shifted) {
+            *sum += term;
+        }
+        for (i, &value) in other.normal.iter().enumerate() {
+            let at = |values: &[f64; 3]| values.get(i).copied().unwrap_or(0.0);
+            let (along_x, along_y) = (at(&other.along_x), at(&other.along_y));
+            for (sums, term) in [
+                (&mut self.normal, value),
+                (&mut self.along_x, along_x + dx * value),
+                (&mut self.along_y, along_y + dy * value),
+            ] {
+                if let Some(sum) = sums.get_mut(i) {
+                    *sum += term;
+                }
+            }
+        }
+    }
+
+    /// The plane; `None` where the inliers lie on a line.
+    pub fn plane(&self) -> Option<Plane> {
+        let [n, x, y, xx, xy, yy] = self.position;
+        if n < 3.5 {
+            return None;
+        }
+        let (x, y) = (x / n, y / n);
+        let (xx, xy, yy) = (xx - n * x * x, xy - n * x * y, yy - n * y * y);
+        let determinant = xx * yy - xy * xy;
+        if determinant.is_nan() || determinant <= 1e-6 * n * n {
+            return None;
+        }
+        let (a, b, c) = (yy / determinant, -xy / determinant, xx / determinant);
+        let (mut gradient, mut middle) = ([[0.0; 3]; 2], self.normal);
+        let [along_x, along_y] = &mut gradient;
+        let sums = self.normal.iter().zip(self.along_x).zip(self.along_y);
+        for ((((&sum, sx), sy), out_x), out_y) in sums.zip(along_x).zip(along_y) {
+            let (sx, sy) = (sx - x * sum, sy - y * sum);
+            (*out_x, *out_y) = (a * sx + b * sy, b * sx + c * sy);
+        }
+        for value in &mut middle {
+            *value /= n;
+        }
+        Some(Plane { middle, gradient, variance: [a, b, c] })
+    }
+}
