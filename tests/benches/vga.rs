@@ -12,8 +12,8 @@ use ofc_core::rng::Rng;
 use ofc_core::segment;
 use ofc_core::solve::{Outcome, Params, Road, Solution, solve, workspace_len};
 use ofc_tests::depth_maps::{TABLE_1_COLORS, bust, table_1_directions, terrain};
-use ofc_tests::scene::{self, CLEAN, OTHER, cap, moved};
-use ofc_tests::scenes::{Encoded, Layout, Scene, ellipsoid, three_lights};
+use ofc_tests::linear_scenes::{Encoded, Layout, Scene, ellipsoid, three_lights};
+use ofc_tests::shaded_scenes::{self, CLEAN, OTHER, cap, moved};
 
 const PIXELS: usize = 640 * 480;
 
@@ -71,8 +71,9 @@ fn normals_vga(bencher: Bencher, length: Length) {
 #[divan::bench]
 fn segment_vga(bencher: Bencher) {
     let (left, right) = (moved(cap(280.0, 160.0), [-156.0, 0.0]), moved(cap(240.0, 150.0), [160.0, 5.0]));
-    let left = scene::Scene::new(640, 480, &CLEAN, left);
-    let both = left.behind(&scene::Scene::new(640, 480, &OTHER, right)).with_noise(1.0, 9).quantized();
+    let left = shaded_scenes::Scene::new(640, 480, &CLEAN, left);
+    let both =
+        left.behind(&shaded_scenes::Scene::new(640, 480, &OTHER, right)).with_noise(1.0, 9).quantized();
     let params = segment::Params::default();
     let (mut labels, mut queue) = (vec![0; PIXELS], vec![0; PIXELS]);
     let mut colors = vec![0.0; segment::colors_len(PIXELS)];

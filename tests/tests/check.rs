@@ -9,7 +9,7 @@ use ofc_core::orientation::Orientation;
 use ofc_core::render::DepthMap;
 use ofc_core::solve::{self, Outcome, Road, Solution};
 use ofc_tests::photographs;
-use ofc_tests::scene::{CLEAN, Matrix, PAPER, Scene, dot};
+use ofc_tests::shaded_scenes::{CLEAN, Matrix, PAPER, Scene, dot};
 
 fn solved(image: &Image) -> Solution {
     let params = solve::Params { road: Road::Paper, ..solve::Params::default() };

@@ -1,7 +1,7 @@
 //! What solve does where eqs. 25 have no root: each fallback, on pictures whose border spoils Pentland's tilts.
 
 use ofc_core::solve::{self, Outcome, Params, Road, SlantFallback, SlantSource, Solution};
-use ofc_tests::scene::{CLEAN, Scene, median_error};
+use ofc_tests::shaded_scenes::{CLEAN, Scene, median_error};
 use std::f64::consts::FRAC_PI_2;
 
 fn solve(scene: &Scene, fallback: SlantFallback) -> Solution {

@@ -3,7 +3,7 @@
 use ofc_core::integrability::integral;
 use ofc_core::rng::Rng;
 use ofc_tests::linear::{Matrix, apply, inverse, multiply, transpose};
-use ofc_tests::scenes::{Scene, paraboloid, three_lights};
+use ofc_tests::linear_scenes::{Scene, paraboloid, three_lights};
 use ofc_tests::tolerances::{INTEGRABLE, REORDERED_SUM};
 
 /// The mean of `(p_y - q_x)^2` over squares of four pixels of the mask; slopes are held at n3 = 0.05 where it is smaller.

@@ -5,7 +5,7 @@ use ofc_core::image::Usable;
 use ofc_core::lmeds::{self, FitError, Method, Params};
 use ofc_core::solve;
 use ofc_tests::photographs;
-use ofc_tests::scene::{CLEAN, Scene, dot, lopsided};
+use ofc_tests::shaded_scenes::{CLEAN, Scene, dot, lopsided};
 
 fn fit(scene: &Scene, method: Method) -> Result<lmeds::Fit, FitError> {
     let params = Params { method, ..Params::default() };

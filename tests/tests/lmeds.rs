@@ -5,8 +5,8 @@ use ofc_core::lmeds::{Fit, FitError, MAX_SUBSETS, Params, fit, subset_count, wor
 use ofc_core::rng::Rng;
 use ofc_core::student_t;
 use ofc_tests::linear::{inverse, least_squares, length, multiply, transpose};
+use ofc_tests::linear_scenes::{Scene, ellipsoid, normal, sphere, table_1_f, three_lights};
 use ofc_tests::lmeds_oracle::{self as oracle, row};
-use ofc_tests::scenes::{Scene, ellipsoid, normal, sphere, table_1_f, three_lights};
 use ofc_tests::tolerances::{
     EQUIVARIANCE, EXHAUSTIVE_OBJECTIVE, NORMAL_EQUATIONS, OBJECTIVE, REORDERED_SUM, STORED_AS_F32, STUDENT,
     STUDENT_QUANTILE,

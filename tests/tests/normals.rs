@@ -4,7 +4,7 @@ use ofc_core::normals::{Length, TooShort, compute};
 use ofc_core::orientation::{Orientation, RANK_THRESHOLD};
 use ofc_core::rng::Rng;
 use ofc_tests::linear::{apply, inverse, unit};
-use ofc_tests::scenes::{Scene, three_lights};
+use ofc_tests::linear_scenes::{Scene, three_lights};
 use ofc_tests::tolerances::STORED_AS_F32;
 
 const CANARY: f32 = 12_345.0;

@@ -10,7 +10,7 @@ use ofc_core::orthogonal::closed_form::closed_form;
 use ofc_core::orthogonal::{Found, OrthogonalError, TwinChoice};
 use ofc_core::solve;
 use ofc_tests::photographs;
-use ofc_tests::scene::{CLEAN, Light, Matrix, PAPER, Scene, cap, lopsided, median_error};
+use ofc_tests::shaded_scenes::{CLEAN, Light, Matrix, PAPER, Scene, cap, lopsided, median_error};
 use std::f64::consts::PI;
 
 /// The integral of pictures in f32 that are exact otherwise: the square of their rounding.

@@ -4,7 +4,7 @@ use ofc_core::rng::Rng;
 use ofc_core::tilt::Tilts;
 use ofc_core::tilt::pentland::tilts;
 use ofc_tests::linear::eliminate;
-use ofc_tests::scenes::{Scene, sphere, three_lights};
+use ofc_tests::linear_scenes::{Scene, sphere, three_lights};
 use ofc_tests::tolerances::{REORDERED_SUM, SYMMETRIC_TILT};
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 

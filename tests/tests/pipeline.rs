@@ -10,7 +10,7 @@ use ofc_core::orientation::{Orientation, RANK_THRESHOLD, compose};
 use ofc_core::rng::Rng;
 use ofc_core::solve::{Outcome, Params, Road, SlantSource, Solution, solve, workspace_len};
 use ofc_tests::linear::{Matrix, degrees_between, length, median, multiply};
-use ofc_tests::scenes::{
+use ofc_tests::linear_scenes::{
     Layout, Scene, cone, cylinder, direction, ellipsoid as ellipsoid_surface, paraboloid, plane, sphere,
     table_1_f, three_lights,
 };

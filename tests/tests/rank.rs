@@ -6,7 +6,7 @@ use ofc_core::lmeds;
 use ofc_core::rank::{Rank, rank};
 use ofc_core::solve::{self, Outcome};
 use ofc_tests::photographs;
-use ofc_tests::scene::{CLEAN, Light, PAPER, Scene, cap, lopsided};
+use ofc_tests::shaded_scenes::{CLEAN, Light, PAPER, Scene, cap, lopsided};
 
 fn ranks(name: &str, image: &Image) -> Rank {
     let params = lmeds::Params::default();

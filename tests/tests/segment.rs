@@ -5,7 +5,7 @@ use ofc_core::segment::patches::{self, patches};
 use ofc_core::segment::{Params, Regions, SegmentError, colors_len, mark, segment};
 use ofc_core::solve::{self, Outcome};
 use ofc_tests::photographs;
-use ofc_tests::scene::{CLEAN, Light, OTHER, Scene, cap, dot, lopsided, median_error, moved};
+use ofc_tests::shaded_scenes::{CLEAN, Light, OTHER, Scene, cap, dot, lopsided, median_error, moved};
 
 const WIDTH: usize = 320;
 const HEIGHT: usize = 160;

@@ -9,11 +9,11 @@ use ofc_core::stream::{Change, Memory, Params, Pass, State, Stream, StreamError,
 use ofc_core::tilt::TiltEstimator;
 use ofc_tests::bust::bust;
 use ofc_tests::linear::{Matrix, degrees_between, dot, length};
-use ofc_tests::photographs::load;
-use ofc_tests::scene::{self, median_error};
-use ofc_tests::scenes::{
+use ofc_tests::linear_scenes::{
     Layout, Scene, cylinder, direction, ellipsoid, plane, sphere, table_1_f, three_lights,
 };
+use ofc_tests::photographs::load;
+use ofc_tests::shaded_scenes::{self, median_error};
 use ofc_tests::tolerances::{SAMPLED_ANGLE, SAMPLED_STRENGTH};
 
 /// A stream over buffers of its own.
@@ -164,8 +164,9 @@ fn a_sample_of_everything_gives_the_same_bits() {
     }
     let mut in_portraits = 0;
     for seed in 0..3 {
-        let portrait =
-            scene::Scene::new(320, 240, &scene::PAPER, bust(240.0)).with_noise(0.3, seed).quantized();
+        let portrait = shaded_scenes::Scene::new(320, 240, &shaded_scenes::PAPER, bust(240.0))
+            .with_noise(0.3, seed)
+            .quantized();
         let params = sampling(320 * 240);
         assert_same(&portrait.whole(), params);
         in_portraits += usize::from(whole(&portrait.whole(), &params).census.shaded > 1000);
@@ -275,9 +276,9 @@ fn masked_photographs_give_the_same_bits() {
 }
 
 /// A bust in QVGA with noise, rounded to bytes, under lights that are well known on that road.
-fn portrait(road: Road, seed: u64) -> scene::Scene {
-    let lights = if road == Road::Joint { scene::CLEAN } else { scene::PAPER };
-    scene::Scene::new(320, 240, &lights, bust(240.0)).with_noise(1.0, seed).quantized()
+fn portrait(road: Road, seed: u64) -> shaded_scenes::Scene {
+    let lights = if road == Road::Joint { shaded_scenes::CLEAN } else { shaded_scenes::PAPER };
+    shaded_scenes::Scene::new(320, 240, &lights, bust(240.0)).with_noise(1.0, seed).quantized()
 }
 
 /// The largest angle between rows of two F, in degrees, and the largest relative difference of their lengths.
@@ -400,7 +401,7 @@ fn dark_and_white_frames_say_so() {
 }
 
 /// A stream that has seen a portrait.
-fn solved(params: Params) -> (Camera, scene::Scene) {
+fn solved(params: Params) -> (Camera, shaded_scenes::Scene) {
     let scene = portrait(params.solve.road, 100);
     let mut camera = Camera::new(&scene.whole(), params);
     assert_eq!(camera.cold(&scene.whole()), Ok(Pass::Refine));
@@ -408,7 +409,7 @@ fn solved(params: Params) -> (Camera, scene::Scene) {
     (camera, scene)
 }
 
-fn refined(camera: &mut Camera, scene: &scene::Scene) -> (f64, Change) {
+fn refined(camera: &mut Camera, scene: &shaded_scenes::Scene) -> (f64, Change) {
     assert_eq!(camera.frame(&scene.whole()), Ok(Pass::Refine));
     let drift = camera.state.drift().unwrap();
     (drift.inlier_share, drift.change.unwrap())
@@ -466,7 +467,9 @@ fn warm_frames_look_at_as_many_pixels_as_wanted() {
 #[test]
 fn noise_that_comes_and_goes() {
     let picture = |noise, seed| {
-        scene::Scene::new(320, 240, &scene::CLEAN, bust(240.0)).with_noise(noise, seed).quantized()
+        shaded_scenes::Scene::new(320, 240, &shaded_scenes::CLEAN, bust(240.0))
+            .with_noise(noise, seed)
+            .quantized()
     };
     let first = picture(1.0, 0);
     let mut camera = Camera::new(&first.whole(), Params::default());
@@ -491,8 +494,8 @@ fn lights_that_grow_stronger_are_followed() {
     let f = camera.state.orientation().unwrap().f;
     for frame in 1..=20_u32 {
         let gain = 1.0 + 0.02 * f64::from(frame);
-        let lights = scene::PAPER.map(|(angles, color)| (angles, color.map(|c| c * gain)));
-        let brighter = scene::Scene::new(320, 240, &lights, bust(240.0));
+        let lights = shaded_scenes::PAPER.map(|(angles, color)| (angles, color.map(|c| c * gain)));
+        let brighter = shaded_scenes::Scene::new(320, 240, &lights, bust(240.0));
         refined(&mut camera, &brighter.with_noise(1.0, u64::from(frame)).quantized());
     }
     let (angle, _) = apart(&camera.state.orientation().unwrap().f, &f);
@@ -504,7 +507,9 @@ fn lights_that_grow_stronger_are_followed() {
 
 #[test]
 fn other_lights_need_a_cold_start() {
-    for (params, lights) in [(Params::default(), scene::PAPER), (on_paper(Params::default()), scene::CLEAN)] {
+    for (params, lights) in
+        [(Params::default(), shaded_scenes::PAPER), (on_paper(Params::default()), shaded_scenes::CLEAN)]
+    {
         changes(params, &lights);
     }
     let params = on_paper(Params::default());
@@ -518,10 +523,10 @@ fn other_lights_need_a_cold_start() {
     assert_eq!(lenient.state.drift().map(|drift| drift.inlier_share), Some(0.0));
 }
 
-fn changes(params: Params, lights: &[scene::Light]) {
+fn changes(params: Params, lights: &[shaded_scenes::Light]) {
     let (mut camera, _) = solved(params);
     let before = digits(camera.state.solution());
-    let other = scene::Scene::new(320, 240, lights, bust(240.0)).with_noise(1.0, 7).quantized();
+    let other = shaded_scenes::Scene::new(320, 240, lights, bust(240.0)).with_noise(1.0, 7).quantized();
     assert_eq!(camera.frame(&other.whole()), Ok(Pass::Colors));
     let drift = *camera.state.drift().unwrap();
     println!("{drift:?}");

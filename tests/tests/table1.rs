@@ -4,7 +4,7 @@ use ofc_core::constrained_slant::roots;
 use ofc_core::ellipsoid::{self, Ellipsoid};
 use ofc_core::orientation;
 use ofc_tests::linear::{Matrix, degrees_between, inverse, length, multiply, transpose};
-use ofc_tests::scenes::{direction, table_1_f};
+use ofc_tests::linear_scenes::{direction, table_1_f};
 use ofc_tests::tolerances::{LAST_PRINTED_DIGIT, ONE_DECIMAL, TWO_DECIMALS};
 
 const TILTS: [f64; 3] = [-36.80, -149.91, -136.55];
@@ -51,9 +51,9 @@ fn the_correct_rows_follow_from_lights_and_colors() {
 
 #[test]
 fn the_color_matrix_as_printed_does_not_give_them() {
-    let mut colors = ofc_tests::scenes::TABLE_1_COLORS;
+    let mut colors = ofc_tests::linear_scenes::TABLE_1_COLORS;
     colors[2][2] = 50.0;
-    let f = multiply(colors, ofc_tests::scenes::table_1_lights());
+    let f = multiply(colors, ofc_tests::linear_scenes::table_1_lights());
     let ratio = length(f[2]) / length(f[0]);
     assert!((ratio - NORMS[2] / NORMS[0]).abs() > 0.05, "the misprint is none: {ratio}");
 }

@@ -9,7 +9,7 @@ use ofc_core::orthogonal::OrthogonalError;
 use ofc_core::orthogonal::tilts_given::{Params, tilts_given, workspace_len};
 use ofc_core::solve;
 use ofc_tests::photographs;
-use ofc_tests::scene::{CLEAN, Matrix, PAPER, Scene, cap, dot, lopsided, median_error};
+use ofc_tests::shaded_scenes::{CLEAN, Matrix, PAPER, Scene, cap, dot, lopsided, median_error};
 use std::f64::consts::FRAC_PI_2;
 
 fn inliers(window: &Window) -> u64 {

@@ -1,4 +1,5 @@
-//! Small pictures rendered from formulas: a depth function, some lights, noise. Shares no code with the core.
+//! Small pictures rendered from a depth function under any number of lights, with the shadows on what is turned away from
+//! them. Shares no code with the core.
 
 use ofc_core::image::{Image, Order, Sample};
 

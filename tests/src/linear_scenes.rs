@@ -1,4 +1,4 @@
-//! Rendered pictures with known normals: rho = F n in f64, in any of the layouts that the core reads.
+//! Rendered pictures with known normals that obey the model: rho = F n in f64, in any of the layouts that the core reads.
 
 use crate::linear::{Matrix, apply, unit};
 use ofc_core::image::{Image, Order, Sample};
