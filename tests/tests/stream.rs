@@ -316,6 +316,23 @@ fn a_sample_of_a_portrait() {
 }
 
 #[test]
+fn samples_of_photographs() {
+    println!("against solve: largest angle of F's rows, strength");
+    for name in ["cat_figurine", "gelsight_ball_6mm", "gelsight_ball_9mm"] {
+        let Some(photograph) = load(name) else { return };
+        let image = photograph.image();
+        for params in [Params::default(), sampling(8192)] {
+            let expected = whole(&image, &params).choice.unwrap().orientation;
+            let mut camera = Camera::new(&image, params);
+            assert_eq!(camera.cold(&image), Ok(Pass::Refine));
+            let (angle, strength) = apart(&camera.state.orientation().unwrap().f, &expected.f);
+            println!("{name} {}: {angle:.2} deg, {strength:.4}", params.solve.lmeds.sample_size);
+            assert!(angle < SAMPLED_ANGLE && strength < SAMPLED_STRENGTH);
+        }
+    }
+}
+
+#[test]
 fn frames_that_are_none() {
     let scene = portrait(Road::Paper, 1);
     let image = scene.whole();
