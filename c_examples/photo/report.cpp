@@ -95,19 +95,22 @@ std::string text(const char *format, ...)
     return line;
 }
 
-// How far to trust the orientation, in plain words.
-std::string trust(const ofc_solution &s)
+// How far to trust the result, in plain words.
+std::string trust(const Result &result)
 {
-    const ofc_confidence &c = s.confidence;
-    const double error = degrees(c.error_rad);
+    const ofc_confidence &c = result.solution.confidence;
     if (c.evidence == OFC_EVIDENCE_TILTS_ALONE)
         return "the orientation rests on tilts alone: good for closed convex shapes, not known how good for this one";
-    const char *level = error < 3 ? "trust the orientation" : error < 8 ? "trust the orientation roughly" : "do not rely on the orientation";
+    const double sigma = quantile(result.uncertainty, 0.5);
+    const char *level = sigma < 5 ? "trust the normals" : sigma < 12 ? "trust the normals roughly" : "do not rely on the normals";
     const char *evidence = c.evidence == OFC_EVIDENCE_OUTWARD         ? "from normals that point outward"
                            : c.evidence == OFC_EVIDENCE_INTEGRABILITY ? "from integrability"
                                                                       : "from integrability and normals that point outward";
     const char *shape = c.dome > 0.5 ? "clearly convex" : c.dome > 0.15 ? "more convex than concave" : "convex or concave is a guess";
-    return text("%s: expected to be off by %.1f degrees, %s; %s", level, error, evidence, shape);
+    // A hundredth as likely.
+    const char *second = c.second_best < 4.6 ? "; another is not ruled out" : "";
+    return text("%s: expected to be off by %.1f degrees, as a whole by %.1f; orientation %s, %s%s", level, sigma,
+                degrees(c.error_rad), evidence, shape, second);
 }
 
 template <std::size_t size> json rows(const double (&entries)[size], std::size_t columns)
@@ -127,12 +130,12 @@ json uncertainty(const Result &result)
             {"covariance_of_F", rows(result.covariance.f, 9)}};
 }
 
-json confidence(const ofc_solution &s)
+json confidence(const Result &result)
 {
     static const char *const names[] = {"tilts alone", "outward normals", "integrability", "both"};
-    const ofc_confidence &c = s.confidence;
+    const ofc_confidence &c = result.solution.confidence;
     return {{"evidence", names[c.evidence]},       {"expected_error_deg", degrees(c.error_rad)}, {"dome", c.dome},
-            {"second_best", c.second_best},        {"covariance", matrix(c.covariance)},         {"in_words", trust(s)}};
+            {"second_best", c.second_best},        {"covariance", matrix(c.covariance)},         {"in_words", trust(result)}};
 }
 
 } // namespace
@@ -174,6 +177,7 @@ void write_report(const std::string &path, const Result &result)
           {"masked_out", s.census.masked_out},
           {"dark", s.census.dark},
           {"saturated", s.census.saturated},
+          {"shaded", s.census.shaded},
           {"non_finite", s.census.non_finite}}},
         {"coefficients", coefficients(s.fit)},
         {"C", matrix(s.ellipsoid.c)},
@@ -188,7 +192,7 @@ void write_report(const std::string &path, const Result &result)
         {"tilt_deg", in_degrees(s.tilts.tilt_rad)},
         {"slant_deg", in_degrees(s.slant_rad)},
         {"slant_source", source_name(s.slant_source)},
-        {"confidence", confidence(s)},
+        {"confidence", confidence(result)},
         {"candidates", candidates(s)},
         {"F", matrix(s.orientation.f)},
         {"singular_values", s.orientation.singular_values},
@@ -228,14 +232,14 @@ std::vector<Line> summary(const Result &result)
         lines.push_back({"refused", ofc_status_message(result.status)});
     if (result.status < 0)
         return lines;
-    lines.push_back({"pixels", text("%d usable, %d inliers after residuals, %d after norms", s.census.usable,
-                                    s.fit.inlier_count, s.inlier_count)});
+    lines.push_back({"pixels", text("%d in the shadow of a light, %d usable, %d inliers after residuals, %d after norms",
+                                    s.census.shaded, s.census.usable, s.fit.inlier_count, s.inlier_count)});
     lines.push_back({"ellipsoid", text("robust R^2 %.4f, dispersion %.4f", s.fit.r_squared, s.fit.dispersion)});
     if (s.orientation.rank == 0)
         return lines;
     lines.back().text += text(", location of norms %.4f", s.norm_location.location);
     if (s.slant_source == OFC_SLANTS_JOINT)
-        lines.push_back({"trust", trust(s)});
+        lines.push_back({"trust", trust(result)});
     else
         lines.push_back({"slants", text("from a %s; %d candidate%s", source_name(s.slant_source), s.candidate_count,
                                         s.candidate_count == 1 ? "" : "s")});
