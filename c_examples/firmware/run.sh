@@ -43,6 +43,7 @@ budget() {
     echo "| | flash | RAM | stack in a call | stack | rendering | cold solve | normals | warm frame |"
     echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
 } >"$table"
+
 # measure NAME [FEATURE]: builds and runs the firmware for this board with a feature of the library, and adds its row.
 measure() {
     local name=$1 program=$out/$1${2:+-$2} flash ram stack row stage

@@ -52,6 +52,14 @@ pub struct Ellipsoid {
     pub cosines: [f64; 3],
 }
 
+impl Ellipsoid {
+    /// The inverse of the root.
+    #[must_use]
+    pub fn root_inverse(&self) -> Mat3 {
+        mat3::pseudo_inverse(&mat3::svd(&self.root), f64::EPSILON).0
+    }
+}
+
 /// C has an eigenvalue that is not positive: the colors do not lie on an ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotPositiveDefinite {

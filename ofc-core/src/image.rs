@@ -257,7 +257,7 @@ impl<'a> Image<'a> {
         window.x = x;
         window.y = y;
         window.len = len;
-        window.masked = if len == WINDOW { u64::MAX } else { (1 << len) - 1 };
+        window.masked = first_bits(len);
         if len == 0 {
             return;
         }
@@ -383,6 +383,11 @@ impl Window {
         }
         bits
     }
+}
+
+/// The first `count` bits of a window.
+pub(crate) const fn first_bits(count: usize) -> u64 {
+    if count < WINDOW { (1 << count) - 1 } else { u64::MAX }
 }
 
 /// Visits the set bits of `bits`, lowest first.

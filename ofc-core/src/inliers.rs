@@ -157,7 +157,12 @@ impl Inliers {
     #[must_use]
     #[inline(never)]
     pub fn bits(&self, window: &Window) -> u64 {
-        self.norm.bits(window, self.residual.bits(window, self.usable.bits(window)))
+        self.bits_among(window, self.usable.exposed(window))
+    }
+
+    /// [`Self::bits`], of those that [`Usable::exposed`] has found.
+    pub(crate) fn bits_among(&self, window: &Window, exposed: u64) -> u64 {
+        self.norm.bits(window, self.residual.bits(window, self.usable.shadows.lit(window, exposed)))
     }
 
     /// How many inliers `pixels` hold.

@@ -12,7 +12,7 @@
 //!   decides; regression listens to all of it. Both are used ([`outward`]).
 //!
 //! (r1, r2) -> -(r1, r2), the convex/concave twin, changes nothing in the first. The sign of `sum (x n1 + y n2) / n3`
-//! over the surface chooses: normals that point outward make a dome.
+//! over the parts of the surface chooses: normals that point outward make a dome.
 //!
 //! # Reference
 //! Sections 2.3-2.4 (eqs. 13-15) and 3.2 (eqs. 20-21), which this combines.
@@ -109,8 +109,9 @@ pub fn estimate(image: &Image, inliers: &Inliers, root: &Mat3, workspace: &mut [
             let mut bits = [0; STRIP];
             for ((y, window), bits) in (y..height).zip(&mut windows).zip(&mut bits) {
                 image.read(x, y, window);
-                survey.see(x, y, inliers.usable.exposed(window));
-                *bits = inliers.bits(window);
+                let exposed = inliers.usable.exposed(window);
+                survey.see(x, y, exposed);
+                *bits = inliers.bits_among(window, exposed);
             }
             if y + STRIP <= height {
                 let [first, ..] = &windows;

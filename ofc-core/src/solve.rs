@@ -237,11 +237,10 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     Ok(solution)
 }
 
-/// F as a whole: the inverse of `rows` times the root of C.
+/// F as a whole: the inverse of `rows` times the root of C, of which the inverse is given.
 #[inline(never)]
-pub(crate) fn oriented(rows: &Mat3, ellipsoid: &Ellipsoid, rank_threshold: f64) -> (Tilts, Choice) {
-    let (inverse, _) = mat3::pseudo_inverse(&mat3::svd(&ellipsoid.root), f64::EPSILON);
-    let f = mat3::multiply(&inverse, &mat3::transpose(rows));
+pub(crate) fn oriented(rows: &Mat3, root_inverse: &Mat3, rank_threshold: f64) -> (Tilts, Choice) {
+    let f = mat3::multiply(root_inverse, &mat3::transpose(rows));
     let orientation = Orientation::new(f, rank_threshold);
     let tilts = Tilts::alone(f.map(|[x, y, _]| atan2(y, x)));
     let slants = f.map(|[x, y, z]| atan2(hypot(x, y), z));
@@ -342,7 +341,7 @@ impl Solution {
     pub(crate) fn orient(&mut self, joint: Option<Joint>, params: &Params) -> bool {
         self.joint = joint;
         let (Some(joint), Some(ellipsoid)) = (joint, &self.ellipsoid) else { return false };
-        let (tilts, choice) = oriented(&joint.rows, ellipsoid, params.rank_threshold);
+        let (tilts, choice) = oriented(&joint.rows, &ellipsoid.root_inverse(), params.rank_threshold);
         (self.tilts, self.choice) = (Some(tilts), Some(choice));
         self.conclude();
         true

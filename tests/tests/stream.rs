@@ -47,7 +47,7 @@ impl Camera {
         self.stream().end()
     }
 
-    /// Frames until there is an answer, at most four.
+    /// Frames until there is an answer, at most five.
     fn cold(&mut self, image: &Image) -> Result<Pass, StreamError> {
         let mut pass = self.frame(image)?;
         for expected in [Pass::Outward, Pass::Integrability, Pass::Tilts, Pass::Slants] {
@@ -150,8 +150,7 @@ fn a_sample_of_everything_gives_the_same_bits() {
                 let scene = if sample == Sample::F32 { noisy.clone() } else { noisy.clone().rounded() };
                 let encoded = scene.encode_as(Layout { sample, order, gap: 12 });
                 let usable = scene.colors.iter().filter(|c| c.iter().any(|&v| v > 0.0)).count();
-                // All pixels, and exactly as many as there are.
-                // Windows are all there where there is room for all pixels, usable or not.
+                // All pixels, and on the paper's road exactly as many as there are: windows are all there where there is room for all pixels, usable or not.
                 let alone = on_paper(sampling(usable as u32));
                 for params in roads(sampling((width * height) as u32)).into_iter().chain([alone]) {
                     let (outcome, candidates) = assert_same(&encoded.image(), params);

@@ -34,7 +34,7 @@ impl<'w> Cells<'w> {
         [[a, b, c], [d, e, f]]
     }
 
-    /// The covariance of a pixel's N, from the residuals behind the cells, which are lost; `None` without any.
+    /// The covariance of a pixel's N, from the residuals behind the cells; the gradients are lost. `None` without any.
     pub fn noise(&self, rest: &mut [f32]) -> Option<Mat3> {
         let n = self.width * self.height;
         let (residuals, scratch) = rest.split_at_mut_checked(n * RESIDUALS)?;
@@ -67,21 +67,28 @@ impl<'w> Cells<'w> {
         [self.width, self.height]
     }
 
-    /// What lies around all inliers; `None` without any.
-    pub fn area(&self) -> Option<Area> {
-        let (mut low, mut high) = ([u32::MAX; 2], [0; 2]);
+    /// The first and the last column and row of cells that hold inliers; `None` without any.
+    pub fn bounds(&self) -> Option<[[usize; 2]; 2]> {
+        let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
         for y in 0..self.height {
             for x in 0..self.width {
                 if self.at(x, y).count() > 0.0 {
                     for ((low, high), at) in low.iter_mut().zip(&mut high).zip([x, y]) {
-                        *low = (at as u32).min(*low);
-                        *high = (at as u32 + 1).max(*high);
+                        *low = at.min(*low);
+                        *high = at.max(*high);
                     }
                 }
             }
         }
-        let ([x0, y0], [x1, y1], side) = (low, high, self.side as u32);
-        (x1 > x0).then(|| Area { from: [x0 * side, y0 * side], size: [(x1 - x0) * side, (y1 - y0) * side] })
+        let ([first, _], [last, _]) = (low, high);
+        (first <= last).then_some([low, high])
+    }
+
+    /// What lies around all inliers; `None` without any.
+    pub fn area(&self) -> Option<Area> {
+        let [[x0, y0], [x1, y1]] = self.bounds()?;
+        let pixels = |cells: usize| (cells * self.side) as u32;
+        Some(Area { from: [x0, y0].map(pixels), size: [x1 + 1 - x0, y1 + 1 - y0].map(pixels) })
     }
 
     /// Pixels along the side of a cell.

@@ -113,20 +113,10 @@ pub(super) struct Parts {
 impl Parts {
     /// Around all cells that hold an inlier; `None` where none does.
     pub fn around(cells: &Cells) -> Option<Self> {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        let [width, height] = cells.size();
-        for y in 0..height {
-            for x in 0..width {
-                if cells.at(x, y).count() > 0.0 {
-                    for ((low, high), at) in low.iter_mut().zip(&mut high).zip(cells.middle(x, y)) {
-                        *low = low.min(at);
-                        *high = high.max(at);
-                    }
-                }
-            }
-        }
-        let ([x0, y0], [x1, y1]) = (low, high);
-        (x1 >= x0).then_some(Self { from: low, size: [x1 - x0 + 1.0, y1 - y0 + 1.0] })
+        let [[left, top], [right, bottom]] = cells.bounds()?;
+        let (from, [x1, y1]) = (cells.middle(left, bottom), cells.middle(right, top));
+        let [x0, y0] = from;
+        Some(Self { from, size: [x1 - x0 + 1.0, y1 - y0 + 1.0] })
     }
 
     /// The part that a position lies in.

@@ -58,15 +58,21 @@ impl Survey {
         self.grid.add(at, len, inliers, normal, numbers);
     }
 
-    /// As [`estimate`], from the sums in the first of these numbers; `None` also where there was not room enough.
+    /// The cells, what lies behind them, what they say of outward normals, and the noise.
+    fn evidence<'w>(&self, numbers: &'w mut [f32]) -> Option<(Cells<'w>, &'w mut [f32], Outward, Mat3)> {
+        let (cells, rest) = Cells::of(&self.grid, numbers)?;
+        let outward = Outward::of(&cells, rest, self.whole.position())?;
+        let noise = cells.noise(rest)?;
+        Some((cells, rest, outward, noise))
+    }
+
+    /// As [`super::estimate`], from the sums in the first of these numbers; `None` also where there was not room enough.
     #[inline(never)]
     pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
         if !self.grid.is_fine() || numbers.len() < self.grid.len() {
             return None;
         }
-        let (mut cells, rest) = Cells::of(&self.grid, numbers)?;
-        let outward = Outward::of(&cells, rest, self.whole.position())?;
-        let noise = cells.noise(rest)?;
+        let (mut cells, rest, outward, noise) = self.evidence(numbers)?;
         let mut estimate = Estimate::new(&outward, &noise);
         for _ in WINDOW_SIZES {
             let goes_on = integrable::collect(&cells, rest)
@@ -82,9 +88,7 @@ impl Survey {
     /// What cells of any size say; windows of the area that they lie in are to be summed next.
     #[inline(never)]
     pub fn outlook(&self, numbers: &mut [f32]) -> Option<Outlook> {
-        let (cells, rest) = Cells::of(&self.grid, numbers)?;
-        let outward = Outward::of(&cells, rest, self.whole.position())?;
-        let noise = cells.noise(rest)?;
+        let (cells, _, outward, noise) = self.evidence(numbers)?;
         Some(Outlook { outward, noise, area: cells.area()? })
     }
 }
@@ -113,7 +117,7 @@ impl Outlook {
         Windows::new(&self.area, numbers.len())
     }
 
-    /// As [`estimate`], from the windows that were summed.
+    /// As [`super::estimate`], from the windows that were summed.
     #[inline(never)]
     pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
         let windows = self.windows(numbers);

@@ -3,7 +3,7 @@
 use super::integrable::RECORD;
 use super::moments::{Moments, NUMBERS};
 use super::outward::Parts;
-use crate::image::{Window, for_each_bit};
+use crate::image::{Window, first_bits, for_each_bit};
 use crate::mat3::{self, Mat3};
 use core::num::NonZero;
 
@@ -111,14 +111,34 @@ impl Spread {
             }
         }
     }
+
+    /// Replaces the sums of every window by what `record` makes of them and of the window's middle, where it makes anything: how
+    /// many there are, one after the other at the start of `numbers`.
+    pub fn replace(
+        &self,
+        numbers: &mut [f32],
+        record: impl Fn(&Moments, [f64; 2]) -> Option<[f32; RECORD]>,
+    ) -> usize {
+        let (mut n, half) = (0, 0.5 * (self.size as f64 - 1.0));
+        let places = (0..self.rows).flat_map(|row| (0..self.columns).map(move |column| (column, row)));
+        for (i, (column, row)) in places.enumerate() {
+            let read = numbers.get(i * NUMBERS..).and_then(<[f32]>::first_chunk).map(Moments::load);
+            let [x, y] = self.corner(column, row).map(|at| at as f64);
+            if let Some(sums) = read
+                && let Some(made) = record(&sums, [x + half, -y - half])
+                && let Some(out) = numbers.get_mut(n * RECORD..).and_then(<[f32]>::first_chunk_mut)
+            {
+                *out = made;
+                n += 1;
+            }
+        }
+        n
+    }
 }
 
 /// The bits of a window that begins at column `x` which lie in the `size` columns from `left` on.
 const fn among(x: usize, left: usize, size: usize) -> u64 {
-    const fn below(bit: usize) -> u64 {
-        if bit < u64::BITS as usize { (1 << bit) - 1 } else { u64::MAX }
-    }
-    below((left + size).saturating_sub(x)) & !below(left.saturating_sub(x))
+    first_bits((left + size).saturating_sub(x)) & !first_bits(left.saturating_sub(x))
 }
 
 /// Windows of all sizes.
@@ -176,31 +196,6 @@ impl Windows {
         let (numbers, scratch) = numbers.split_at_mut_checked(self.count() * NUMBERS)?;
         let range = spread.first * NUMBERS..(spread.first + spread.count()) * NUMBERS;
         Some((numbers.get_mut(range)?, scratch))
-    }
-}
-
-impl Spread {
-    /// Calls `record` with the sums of every window, their middle and where to write what it makes of them: over what has
-    /// been read, one after the other. How many there were, `record` saying so, at the start of `numbers`.
-    pub fn replace(
-        &self,
-        numbers: &mut [f32],
-        record: impl Fn(&Moments, [f64; 2]) -> Option<[f32; RECORD]>,
-    ) -> usize {
-        let (mut n, half) = (0, 0.5 * (self.size as f64 - 1.0));
-        let places = (0..self.rows).flat_map(|row| (0..self.columns).map(move |column| (column, row)));
-        for (i, (column, row)) in places.enumerate() {
-            let read = numbers.get(i * NUMBERS..).and_then(<[f32]>::first_chunk).map(Moments::load);
-            let [x, y] = self.corner(column, row).map(|at| at as f64);
-            if let Some(sums) = read
-                && let Some(made) = record(&sums, [x + half, -y - half])
-                && let Some(out) = numbers.get_mut(n * RECORD..).and_then(<[f32]>::first_chunk_mut)
-            {
-                *out = made;
-                n += 1;
-            }
-        }
-        n
     }
 }
 

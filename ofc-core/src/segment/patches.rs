@@ -9,7 +9,7 @@
 //! J. Opt. Soc. Am. A 11, 1994.
 
 use crate::ellipsoid;
-use crate::image::{Image, Usable, WINDOW, Window, for_each_bit};
+use crate::image::{Image, Usable, WINDOW, Window, first_bits, for_each_bit};
 use crate::mat3;
 use libm::sqrt;
 
@@ -57,7 +57,7 @@ pub fn patches(
         let (mut sums, mut count, mut total) = ([0.0; 6], 0, 0);
         for y in row..row + side {
             image.read(column, y, &mut window);
-            let own = if side == WINDOW { u64::MAX } else { (1 << side) - 1 };
+            let own = first_bits(side);
             let bits = usable.bits(&window) & own;
             for_each_bit(bits, |i| {
                 let [r, g, b] = window.pixel(i).map(f64::from);

@@ -6,7 +6,7 @@ use super::{FULL, Held, Memory, Pass, State, StreamError, room};
 use crate::cells::{Block, for_each_block_of_rows};
 use crate::constrained_slant::{self, Candidates, MAX_CANDIDATES, SlantRoot};
 use crate::ellipsoid::Coefficients;
-use crate::image::{Census, Image, Usable, WINDOW, Window, for_each_bit};
+use crate::image::{Census, Image, Usable, WINDOW, Window, first_bits, for_each_bit};
 use crate::inliers::Inliers;
 use crate::integrability;
 use crate::lmeds::{self, FitError, Method};
@@ -301,16 +301,11 @@ pub(super) fn keep_window(width: usize, window: &Window, bits: u64, values: &mut
         copy(values.get_mut(channel * width + window.x..).unwrap_or_default(), color, window.len);
     }
     let red = values.get_mut(window.x..).unwrap_or_default();
-    for_each_bit(first(window.len) & !bits, |i| {
+    for_each_bit(first_bits(window.len) & !bits, |i| {
         if let Some(out) = red.get_mut(i) {
             *out = f32::NAN;
         }
     });
-}
-
-/// The first `count` bits.
-const fn first(count: usize) -> u64 {
-    if count < WINDOW { (1 << count) - 1 } else { u64::MAX }
 }
 
 /// Copies `count` values, of as many as there are.
@@ -324,7 +319,7 @@ fn copy(to: &mut [f32], from: &[f32], count: usize) {
 pub(super) fn kept(x: usize, width: usize, memory: &Memory, window: &mut Window) {
     window.x = x;
     window.len = width.saturating_sub(x).min(WINDOW);
-    window.masked = first(window.len);
+    window.masked = first_bits(window.len);
     for (channel, out) in window.color.iter_mut().enumerate() {
         copy(out, memory.values.get(channel * width + x..).unwrap_or_default(), window.len);
     }

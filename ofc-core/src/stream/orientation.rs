@@ -2,7 +2,6 @@
 
 use super::cold::keep_window;
 use super::{Held, Memory, Pass, State, rows_len};
-use crate::ellipsoid::Ellipsoid;
 use crate::image::{Image, Window};
 use crate::joint::{STRIP, Survey};
 use crate::mat3::{self, Mat3};
@@ -22,10 +21,11 @@ impl State {
         let Some((numbers, rows)) = memory.values.split_at_mut_checked(kept) else { return };
         let above = y % STRIP;
         row.for_each_window(|window| {
-            let bits = inliers.bits(window);
+            let exposed = inliers.usable.exposed(window);
+            let bits = inliers.bits_among(window, exposed);
             self.inlier_count += bits.count_ones() as usize;
             let Held::Survey(survey) = &mut self.held else { return };
-            survey.see(window.x, y, inliers.usable.exposed(window));
+            survey.see(window.x, y, exposed);
             if above + 1 < STRIP {
                 let row = rows.get_mut(above * 3 * self.width..).unwrap_or_default();
                 keep_window(self.width, window, bits, row);
@@ -110,11 +110,10 @@ impl Strip<'_> {
     }
 }
 
-/// The transformation of the normals of an ellipsoid that makes F nearest to an old one, whose inverse is given: of all
-/// orthogonal ones that which turns the new normals least from the old ones, where these look in all directions alike.
+/// The transformation of the normals under another root of C, whose inverse is given, that makes F nearest to an old one: of
+/// all orthogonal ones that which turns the new normals least from the old ones, where these look in all directions alike.
 #[inline(never)]
-pub(super) fn nearest_rows(f_inverse: &Mat3, ellipsoid: &Ellipsoid) -> Mat3 {
-    let (inverse, _) = mat3::pseudo_inverse(&mat3::svd(&ellipsoid.root), f64::EPSILON);
-    let svd = mat3::svd(&mat3::multiply(f_inverse, &inverse));
+pub(super) fn nearest_rows(f_inverse: &Mat3, root_inverse: &Mat3) -> Mat3 {
+    let svd = mat3::svd(&mat3::multiply(f_inverse, root_inverse));
     mat3::multiply(&mat3::transpose(&svd.left), &svd.right)
 }

@@ -5,7 +5,8 @@
 //! of inliers these add up to the difference between its ends, however far the rows lie apart. As others are looked at in
 //! every frame, the differences of about n frames are averaged. Of the slants
 //! that agree with both those nearest to the old ones are taken. The dispersion grows or shrinks with the deviation of
-//! the inliers' residuals: as it was truncated before, so it is now.
+//! the inliers' residuals: as it was truncated before, so it is now. On the other road the orthogonal transformation is kept,
+//! as far as the new C lets it.
 
 use super::cold::{keep_window, kept, slants_of};
 use super::orientation::nearest_rows;
@@ -156,8 +157,9 @@ impl State {
     fn adopt_form(&mut self, form: &Coefficients) -> Option<([f64; 3], [f64; 3])> {
         let ellipsoid = ellipsoid::decompose(form).ok()?;
         let choice = self.solution.choice.as_mut()?;
-        let rows = nearest_rows(&choice.orientation.f_inverse, &ellipsoid);
-        let (tilts, new) = oriented(&rows, &ellipsoid, self.params.solve.rank_threshold);
+        let root_inverse = ellipsoid.root_inverse();
+        let rows = nearest_rows(&choice.orientation.f_inverse, &root_inverse);
+        let (tilts, new) = oriented(&rows, &root_inverse, self.params.solve.rank_threshold);
         if new.orientation.rank < 3 {
             return None;
         }
