@@ -95,7 +95,7 @@ int main(void)
     }
 
     printf("ofc %s: %d inliers of %d pixels\n", ofc_version_string(), (int)solution.inlier_count,
-           (int)solution.census.usable);
+           (int)solution.pixel_counts.usable);
     printf("channel   tilt (true)        slant (true)      norm (true)\n");
     for (int c = 0; c < 3; c++) {
         const double length = sqrt(dot(f[c], f[c]));

@@ -55,7 +55,7 @@ Result solve(const Picture &picture, const ofc_solve_params &params)
         result.uncertainty *= degrees(1);
         result.uncertainty.setTo(std::nan(""), result.inliers == 0);
     } else {
-        // The paper's road does not know how sure it is.
+        // The direct method does not know how sure it is.
         result.uncertainty.release();
     }
 
@@ -153,7 +153,7 @@ int run(const Options &options)
     ofc_solve_params_default(&params);
     params.lmeds.seed = options.seed.value_or(params.lmeds.seed);
     params.lmeds.subsets = options.subsets.value_or(params.lmeds.subsets);
-    params.road = options.paper_road ? OFC_ROAD_PAPER : OFC_ROAD_JOINT;
+    params.orientation_method = options.direct_method ? OFC_ORIENTATION_DIRECT : OFC_ORIENTATION_JOINT;
     params.lmeds.method = options.least_squares ? OFC_FIT_LEAST_SQUARES : OFC_FIT_LEAST_MEDIAN;
     Result result = solve(picture, params);
     result.true_f = true_f;

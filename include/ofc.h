@@ -43,7 +43,7 @@
 
 /* The version of this header, from Cargo.toml; ofc_version() is that of the library. */
 #define OFC_VERSION_MAJOR 0
-#define OFC_VERSION_MINOR 1
+#define OFC_VERSION_MINOR 2
 #define OFC_VERSION_PATCH 0
 #define OFC_VERSION (OFC_VERSION_MAJOR * 10000 + OFC_VERSION_MINOR * 100 + OFC_VERSION_PATCH)
 
@@ -205,17 +205,17 @@
 // There is no root: Zheng and Chellappa's slants.
 #define OFC_SLANTS_ZHENG_CHELLAPPA 6
 
-// F was oriented as a whole (OFC_ROAD_JOINT): its slants follow from it.
+// F was oriented as a whole (OFC_ORIENTATION_JOINT): its slants follow from it.
 #define OFC_SLANTS_JOINT 7
 
 // From integrability on windows of several sizes and from normals that point outward, each as far as it can be trusted
 // in this picture.
-#define OFC_ROAD_JOINT 0
+#define OFC_ORIENTATION_JOINT 0
 
 // The paper's: slants from tilts (section 3). Good on closed convex shapes, poor on relief that touches the frame.
-#define OFC_ROAD_PAPER 1
+#define OFC_ORIENTATION_DIRECT 1
 
-// Tilts, on the paper's road: nothing is known of how sure they are.
+// Tilts, with the direct method: nothing is known of how sure they are.
 #define OFC_EVIDENCE_TILTS_ALONE 0
 
 // Mostly that normals point outward, which is what tilts rest on.
@@ -302,7 +302,7 @@
 // The solution handed in holds no F: the solve that made it did not return OFC_STATUS_OK.
 #define OFC_STATUS_NOT_SOLVED -33
 
-// The solution handed in does not know how sure its orientation is: it was found by tilts alone, on the paper's road.
+// The solution handed in does not know how sure its orientation is: it was found by tilts alone, with the direct method.
 #define OFC_STATUS_NO_COVARIANCE -34
 
 // Fewer usable pixels than a fit needs.
@@ -347,10 +347,10 @@
 // F is there, and the frame refines it.
 #define OFC_PASS_REFINE 4
 
-// A cold start on OFC_ROAD_JOINT: how normals point outward; where the sample has room for all pixels also F.
+// A cold start with OFC_ORIENTATION_JOINT: how normals point outward; where the sample has room for all pixels also F.
 #define OFC_PASS_OUTWARD 5
 
-// A cold start on OFC_ROAD_JOINT: integrability, and F.
+// A cold start with OFC_ORIENTATION_JOINT: integrability, and F.
 #define OFC_PASS_INTEGRABILITY 6
 
 // Least median of squares, the paper's.
@@ -400,7 +400,7 @@ typedef struct ofc_image {
 typedef int32_t ofc_slant_source;
 
 // What becomes of the pixels before any fit; the counts add up to width times height.
-typedef struct ofc_census {
+typedef struct ofc_pixel_counts {
     // Pixels that the fit may use.
     int32_t usable;
     // Left out by the mask.
@@ -417,7 +417,7 @@ typedef struct ofc_census {
     float largest;
     // Zero.
     uint32_t reserved;
-} ofc_census;
+} ofc_pixel_counts;
 
 // A regression coefficient with what the regression knows of it.
 typedef struct ofc_estimate {
@@ -554,7 +554,7 @@ typedef struct ofc_tilts {
 // What decided the orientation: one of OFC_EVIDENCE_*.
 typedef int32_t ofc_evidence;
 
-// How sure the orientation of F is; all zero on the paper's road. Errors of C, which turn and bend normals as well, come on
+// How sure the orientation of F is; all zero with the direct method. Errors of C, which turn and bend normals as well, come on
 // top of it.
 typedef struct ofc_confidence {
     // Covariance of the small rotation, a vector in the frame of the normals, by which all of them may be turned; radians
@@ -563,7 +563,7 @@ typedef struct ofc_confidence {
     // The root mean square angle by which a normal is expected to be turned, in radians.
     double error_rad;
     // Convex or concave: from 0 (the surface is as much a dome as a hollow) to 1 (all of it is a dome).
-    double dome;
+    double convexity;
     // How much less likely the next best orientation elsewhere is, as a difference of log likelihoods; infinite where there
     // is none.
     double second_best;
@@ -618,7 +618,7 @@ typedef struct ofc_solution {
     // Zero.
     uint32_t reserved;
     // What became of the pixels before the fit.
-    struct ofc_census census;
+    struct ofc_pixel_counts pixel_counts;
     // The regression: C with its errors, dispersion, R^2, inliers after the first rejection.
     struct ofc_color_fit fit;
     // Effective ranks of the colors and normals of the inliers: F can be recovered where both are 3.
@@ -631,11 +631,11 @@ typedef struct ofc_solution {
     struct ofc_ellipsoid ellipsoid;
     // Tilts of the rows of F.
     struct ofc_tilts tilts;
-    // Slants of the rows of F, from +z: in [0, pi/2] on the paper's road, in [0, pi] on the other.
+    // Slants of the rows of F, from +z: in [0, pi/2] with the direct method, in [0, pi] on the other.
     double slant_rad[3];
     // How sure the orientation is.
     struct ofc_confidence confidence;
-    // On the paper's road, all slants consistent with the tilts, by ascending first slant.
+    // with the direct method, all slants consistent with the tilts, by ascending first slant.
     struct ofc_slants candidates[OFC_MAX_CANDIDATES];
     // F and its inverse.
     struct ofc_orientation orientation;
@@ -855,7 +855,7 @@ typedef struct ofc_annealing_params {
     uint32_t proposals;
     // Chains that share them, at least 1. Default 8.
     uint32_t chains;
-    // Cells that proposals are judged on, at least 1. Default 2000.
+    // Cells that proposals are evaluated on, at least 1. Default 2000.
     uint32_t sample_cells;
     // Times that the polish may compute (15) over the whole picture, up to 10,000,000. Default 60.
     uint32_t polish_evaluations;
@@ -920,7 +920,7 @@ typedef struct ofc_lmeds_params {
     uint32_t min_subsets;
     // Exactly this many subsets, up to 10,000,000; 0 for as many as confidence and outlier_share ask for. Default 0.
     uint32_t subsets;
-    // Pixels that the search looks at, at least 12; the result is judged on all. Default 10,000.
+    // Pixels that the search looks at, at least 12; the result is evaluated on all. Default 10,000.
     uint32_t sample_size;
     // OFC_FIT_LEAST_MEDIAN or OFC_FIT_LEAST_SQUARES. Default OFC_FIT_LEAST_MEDIAN.
     ofc_fit_method method;
@@ -1014,8 +1014,8 @@ typedef int32_t ofc_tilt_estimator;
 // What to do where eqs. 25 have no root: one of OFC_FALLBACK_*.
 typedef int32_t ofc_slant_fallback;
 
-// How the orthogonal transformation that the regression leaves open is found: one of OFC_ROAD_*.
-typedef int32_t ofc_road;
+// How the orthogonal transformation that the regression leaves open is found: one of OFC_ORIENTATION_*.
+typedef int32_t ofc_orientation_method;
 
 // What ofc_solve() does. Set by ofc_solve_params_default().
 typedef struct ofc_solve_params {
@@ -1029,9 +1029,9 @@ typedef struct ofc_solve_params {
     ofc_tilt_estimator tilt_estimator;
     // What to do where eqs. 25 have no root, one of OFC_FALLBACK_*. Default OFC_FALLBACK_LEAST_SQUARES.
     ofc_slant_fallback slant_fallback;
-    // How F is oriented, one of OFC_ROAD_*. Given tilts, and a picture that is too small for OFC_ROAD_JOINT, take the paper's
-    // road whatever this is; tilt_estimator and slant_fallback are for that road. Default OFC_ROAD_JOINT.
-    ofc_road road;
+    // How F is oriented, one of OFC_ORIENTATION_*. Given tilts, and a picture that is too small for OFC_ORIENTATION_JOINT, take the paper's
+    // method whatever this is; tilt_estimator and slant_fallback are for that method. Default OFC_ORIENTATION_JOINT.
+    ofc_orientation_method orientation_method;
     // 0 leaves out colors that one of the lights does not reach, where such are found; 1 keeps them. Default 0.
     int32_t keep_shadows;
     // Must be zero.
@@ -1043,7 +1043,7 @@ typedef struct ofc_stream_params {
     // As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
     // tilt_estimator is OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
     // OFC_FALLBACK_LEAST_SQUARES. A library built without the feature `full-streams`, for small memories, knows
-    // OFC_ROAD_PAPER with keep_shadows alone, and these are then the defaults.
+    // OFC_ORIENTATION_DIRECT with keep_shadows alone, and these are then the defaults.
     struct ofc_solve_params solve;
     // Where less than this share of the usable pixels fits the model, a frame does not refine it and
     // OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
@@ -1412,7 +1412,7 @@ ofc_status ofc_normals_compute(const struct ofc_image *image,
 // @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 ofc_status ofc_annealing_params_default(struct ofc_annealing_params *params);
 
-// Bytes of workspace that ofc_orthogonal_annealing() needs: 36 for each cell that proposals are judged on.
+// Bytes of workspace that ofc_orthogonal_annealing() needs: 36 for each cell that proposals are evaluated on.
 //
 // @return The size, or 0 when an argument is invalid.
 size_t ofc_orthogonal_annealing_workspace_size(int32_t width,
@@ -1480,7 +1480,7 @@ size_t ofc_constrained_slants_integrable_workspace_size(int32_t width, int32_t h
 // @param cosines       (h12, h13, h23), each in [-1, 1].
 // @param slack         How far the root mean square residual of eqs. 24 may be above the smallest, >= 0; 0.05 is what
 //                      solve uses.
-// @param sample_cells  Cells that slants are judged on, at least 1; 2000 is what solve uses.
+// @param sample_cells  Cells that slants are evaluated on, at least 1; 2000 is what solve uses.
 // @param workspace     ofc_constrained_slants_integrable_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT;
 //                      contents do not matter.
 // @param workspace_bytes  Its size.
@@ -1821,7 +1821,7 @@ const char *ofc_status_message(ofc_status status);
 ofc_status ofc_stream_params_default(struct ofc_stream_params *params);
 
 // Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 5184 or what rows
-// take are more than 20 for each color. Rows take 12 for each pixel of a row on OFC_ROAD_PAPER, and on OFC_ROAD_JOINT 36
+// take are more than 20 for each color. Rows take 12 for each pixel of a row with OFC_ORIENTATION_DIRECT, and with OFC_ORIENTATION_JOINT 36
 // and 116 for each of 192 cells. OFC_STREAM_SIZE(width, height) is no less for the default parameters, for
 // static buffers: 47,104 bytes at 320 x 240.
 //
@@ -1842,19 +1842,19 @@ size_t ofc_stream_size(int32_t width,
 //     }
 //     ofc_status status = ofc_stream_end(stream, &pass);
 //
-// A cold start takes the pass over colors and those of its road, all of one frame or of consecutive frames of a scene at
-// rest: on OFC_ROAD_JOINT outward normals and integrability, on OFC_ROAD_PAPER tilts, and where eqs. 25 have several roots
+// A cold start takes the pass over colors and those of its method, all of one frame or of consecutive frames of a scene at
+// rest: with OFC_ORIENTATION_JOINT outward normals and integrability, with OFC_ORIENTATION_DIRECT tilts, and where eqs. 25 have several roots
 // slants. Then there is F; a few rows of every
 // further frame refine it, and for the others ofc_stream_row() does next to nothing. Medians and fits of
 // a cold start are those of a stratified sample of the colors, and integrability is that of as many windows as there is
 // room for. Where the sample has room for all pixels, the solution is that of ofc_solve() to the bit, but for the
-// integral of a lone candidate, which is not computed (infinite); on OFC_ROAD_PAPER it is enough that it holds all usable
+// integral of a lone candidate, which is not computed (infinite); with OFC_ORIENTATION_DIRECT it is enough that it holds all usable
 // ones. Without the feature `full-streams` fit.covariance is zero.
 //
-// Frames that refine follow C and the strength of the lights. On OFC_ROAD_PAPER they also follow the tilts; on
-// OFC_ROAD_JOINT lights that turn about the scene as a whole are not seen, and need ofc_stream_restart().
+// Frames that refine follow C and the strength of the lights. With OFC_ORIENTATION_DIRECT they also follow the tilts; on
+// OFC_ORIENTATION_JOINT lights that turn about the scene as a whole are not seen, and need ofc_stream_restart().
 //
-// Stack, for this call and every other that takes a stream: below 4 KiB on OFC_ROAD_PAPER, 20 KiB on OFC_ROAD_JOINT.
+// Stack, for this call and every other that takes a stream: below 4 KiB with OFC_ORIENTATION_DIRECT, 20 KiB with OFC_ORIENTATION_JOINT.
 //
 // @param width, height  Of the frames.
 // @param format     How samples are stored; their order and planes are each row's own.
@@ -1916,7 +1916,7 @@ ofc_status ofc_stream_end(struct ofc_stream *stream,
 // @param stream    The stream.
 // @param solution  Output. After frames that refined it: F, its stages and the fit are the last frame's, rank is that of
 //                  the cold start, candidates have no integral (infinite), tilts come from the axes alone, covariances
-//                  are those of the cold start, and counts and census are of the pixels that were looked at.
+//                  are those of the cold start, and counts and pixel counts are of the pixels that were looked at.
 // @return As ofc_solve(), for the cold start; OFC_STATUS_NOT_SOLVED, `solution` untouched, before its last pass;
 //         OFC_STATUS_NO_STREAM; the status of an invalid argument.
 ofc_status ofc_stream_solution(struct ofc_stream *stream,
@@ -1969,7 +1969,7 @@ ofc_status ofc_stream_inliers_row(struct ofc_stream *stream, const struct ofc_im
 // @param solution    What ofc_solve() wrote with OFC_STATUS_OK.
 // @param covariance  Output.
 // @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's
-//         road); OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+//         method); OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
 ofc_status ofc_solution_covariance(const struct ofc_solution *solution, struct ofc_covariance *covariance);
 
 // The 1-sigma angle of each normal that ofc_normals_compute() makes: that below which 68.3 % of errors are expected to lie;
@@ -1984,7 +1984,7 @@ ofc_status ofc_solution_covariance(const struct ofc_solution *solution, struct o
 //                  normal. Exact colors make 0.
 // @param angle_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
 // @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's
-//         road), of which nobody knows how sure it is; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+//         method), of which nobody knows how sure it is; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
 ofc_status ofc_normals_uncertainty(const struct ofc_image *image,
                                    const struct ofc_solution *solution,
                                    float *angle_rad,

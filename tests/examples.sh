@@ -107,10 +107,10 @@ for line in "Lee-Rosenfeld" "correlation of input" "shaded depth" "coefficient";
 json "$out/paper/report.json" 'all(c > 0.98 for c in r["check"]["correlation"]) and r["rank"] == dict(r["rank"], colors=3, normals=3)'
 json "$out/paper/report.json" 'all(abs(a) < 10 for a in r["check"]["depth"]["tilt_difference_deg"])'
 expect 2 "$photo" --report long
-expect 0 "$photo" --road paper --out "$out/paper"
+expect 0 "$photo" --orientation direct --out "$out/paper"
 json "$out/paper/report.json" 'r["confidence"]["evidence"] == "tilts alone" and r["candidates"]'
 json "$out/scene/report.json" 'r["confidence"]["expected_error_deg"] < 8 and "trust" in r["confidence"]["in_words"]'
-expect 2 "$photo" --road short
+expect 2 "$photo" --orientation short
 expect 2 "$photo" --fit mean
 
 # Integration alone gives what ofc_photo gave, in millimetres, from floats; and nearly so from eight bits.

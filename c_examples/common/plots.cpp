@@ -127,7 +127,7 @@ cv::Mat plot_colors(const Picture &picture, const ofc_solution &s, const cv::Mat
     std::vector<std::vector<cv::Vec3d>> lines;
     if (s.ellipsoid.norms[0] > 0)
         lines = wireframe(s.ellipsoid);
-    const double length = 1.05 * std::max<double>(s.census.largest, 1e-30);
+    const double length = 1.05 * std::max<double>(s.pixel_counts.largest, 1e-30);
     const cv::Vec3d axes[3] = {{length, 0, 0}, {0, length, 0}, {0, 0, length}};
     std::vector<cv::Vec3d> corners(axes, axes + 3);
     for (const auto &line : lines)

@@ -23,8 +23,8 @@ Options parse_options(int argc, char **argv)
         ->check(CLI::Range(1, 10000000));
     app.add_option("--truth", options.truth, "True normals to compare with: TIFF of 3 x float32, x right, y up, z out")
         ->type_name("NORMALS.tiff");
-    std::string fit = "median", report = "short", road = "joint";
-    app.add_option("--road", road, "How F is oriented: all evidence together, or the paper's slants from tilts (default: joint)")
+    std::string fit = "median", report = "short", orientation = "joint";
+    app.add_option("--orientation", orientation_method, "How F is oriented: all evidence together, or the paper's slants from tilts (default: joint)")
         ->check(CLI::IsMember({"joint", "paper"}));
     app.add_option("--fit", fit, "How C is fitted: least median of squares, or least squares over every pixel (default: median)")
         ->check(CLI::IsMember({"median", "squares"}));
@@ -40,7 +40,7 @@ Options parse_options(int argc, char **argv)
     } catch (const CLI::ParseError &error) {
         std::exit(app.exit(error) == 0 ? 0 : 2);
     }
-    options.paper_road = road == "paper";
+    options.direct_method = orientation == "direct";
     options.least_squares = fit == "squares";
     options.paper_report = report == "paper";
     return options;

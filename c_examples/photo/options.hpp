@@ -15,7 +15,7 @@ struct Options {
     std::optional<std::uint64_t> seed;
     std::optional<std::uint32_t> subsets;
     DepthOptions depth;
-    bool paper_road = false;    // slants from tilts, in place of the joint orientation
+    bool direct_method = false;    // slants from tilts, in place of the joint orientation
     bool least_squares = false; // in place of least median of squares
     bool save_planes = false;   // the channels as three gray pictures
     bool paper_report = false;  // Table 2 and section 5's checks on the terminal

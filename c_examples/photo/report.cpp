@@ -106,7 +106,7 @@ std::string trust(const Result &result)
     const char *evidence = c.evidence == OFC_EVIDENCE_OUTWARD         ? "from normals that point outward"
                            : c.evidence == OFC_EVIDENCE_INTEGRABILITY ? "from integrability"
                                                                       : "from integrability and normals that point outward";
-    const char *shape = c.dome > 0.5 ? "clearly convex" : c.dome > 0.15 ? "more convex than concave" : "convex or concave is a guess";
+    const char *shape = c.convexity > 0.5 ? "clearly convex" : c.convexity > 0.15 ? "more convex than concave" : "convex or concave is a guess";
     // A hundredth as likely.
     const char *second = c.second_best < 4.6 ? "; another is not ruled out" : "";
     return text("%s: expected to be off by %.1f degrees, as a whole by %.1f; orientation %s, %s%s", level, sigma,
@@ -134,7 +134,7 @@ json confidence(const Result &result)
 {
     static const char *const names[] = {"tilts alone", "outward normals", "integrability", "both"};
     const ofc_confidence &c = result.solution.confidence;
-    return {{"evidence", names[c.evidence]},       {"expected_error_deg", degrees(c.error_rad)}, {"dome", c.dome},
+    return {{"evidence", names[c.evidence]},       {"expected_error_deg", degrees(c.error_rad)}, {"convexity", c.convexity},
             {"second_best", c.second_best},        {"covariance", matrix(c.covariance)},         {"in_words", trust(result)}};
 }
 
@@ -173,12 +173,12 @@ void write_report(const std::string &path, const Result &result)
           {"subsets", s.fit.subsets},
           {"fit", result.params.lmeds.method == OFC_FIT_LEAST_SQUARES ? "squares" : "median"}}},
         {"pixels",
-         {{"usable", s.census.usable},
-          {"masked_out", s.census.masked_out},
-          {"dark", s.census.dark},
-          {"saturated", s.census.saturated},
-          {"shaded", s.census.shaded},
-          {"non_finite", s.census.non_finite}}},
+         {{"usable", s.pixel_counts.usable},
+          {"masked_out", s.pixel_counts.masked_out},
+          {"dark", s.pixel_counts.dark},
+          {"saturated", s.pixel_counts.saturated},
+          {"shaded", s.pixel_counts.shaded},
+          {"non_finite", s.pixel_counts.non_finite}}},
         {"coefficients", coefficients(s.fit)},
         {"C", matrix(s.ellipsoid.c)},
         {"r_squared", s.fit.r_squared},
@@ -233,7 +233,7 @@ std::vector<Line> summary(const Result &result)
     if (result.status < 0)
         return lines;
     lines.push_back({"pixels", text("%d in the shadow of a light, %d usable, %d inliers after residuals, %d after norms",
-                                    s.census.shaded, s.census.usable, s.fit.inlier_count, s.inlier_count)});
+                                    s.pixel_counts.shaded, s.pixel_counts.usable, s.fit.inlier_count, s.inlier_count)});
     lines.push_back({"ellipsoid", text("robust R^2 %.4f, dispersion %.4f", s.fit.r_squared, s.fit.dispersion)});
     if (s.orientation.rank == 0)
         return lines;

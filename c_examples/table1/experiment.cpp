@@ -100,7 +100,7 @@ Experiment run_experiment(const Relief &relief, double noise, std::uint64_t seed
     ofc_solve_params params;
     ofc_solve_params_default(&params);
     params.lmeds.seed = seed;
-    params.road = OFC_ROAD_PAPER;
+    params.orientation_method = OFC_ORIENTATION_DIRECT;
     ofc_solution &s = e.solution;
     e.status = solve(image, params, &e.inliers, s);
     if (e.status != OFC_STATUS_OK)
@@ -133,7 +133,7 @@ Experiment run_experiment(const Relief &relief, double noise, std::uint64_t seed
                             : refusal("OFC (correct tilts)", with_tilts));
     ofc_solution joint = {};
     params.tilt_estimator = OFC_TILT_PENTLAND;
-    params.road = OFC_ROAD_JOINT;
+    params.orientation_method = OFC_ORIENTATION_JOINT;
     const ofc_status jointly = solve(image, params, nullptr, joint);
     e.answers.push_back(jointly == OFC_STATUS_OK
                             ? answer("joint orientation (the default)", normals_by(image, s.inliers, joint.orientation.f_inverse), truth)

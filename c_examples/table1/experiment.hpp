@@ -20,7 +20,7 @@ struct Experiment {
     ofc_solution solution = {}; // with Pentland's tilts
     cv::Mat inliers;            // CV_8U
     Table table;
-    // Estimated tilts, correct tilts, the default road, the best rotation from (15), the closed form, the best orthogonal matrix.
+    // Estimated tilts, correct tilts, the joint method, the best rotation from (15), the closed form, the best orthogonal matrix.
     std::vector<Answer> answers;
     // log10 of the integral (15) over the first slant in degrees, along the solution's branch.
     std::vector<cv::Vec2d> branch;

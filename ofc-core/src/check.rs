@@ -23,15 +23,15 @@
 //! # Reference
 //! Sections 4-6.
 
-use crate::image::{Image, Window, for_each_bit};
-use crate::mat3;
-use crate::normals::{Length, normal};
-use crate::orientation::Orientation;
-use crate::pixels::Pixels;
-use crate::regression::{Estimate, TERMS};
+use crate::color::regression::{Estimate, TERMS};
+use crate::light::tilt::{Tilts, pentland};
+use crate::math::mat3;
+use crate::math::select::{kth_smallest, median_rank};
+use crate::orientation::matrix::Orientation;
+use crate::picture::Pixels;
+use crate::picture::{Image, Window, for_each_bit};
 use crate::render::DepthMap;
-use crate::select::{kth_smallest, median_rank};
-use crate::tilt::{Tilts, pentland};
+use crate::surface::normals::{Length, normal};
 use core::f64::consts::{PI, TAU};
 use libm::{atan2, sqrt};
 

@@ -8,37 +8,16 @@
 #[cfg(test)]
 extern crate std;
 
-pub mod angle;
-pub mod cells;
-pub mod channel_maxima;
-pub mod check;
-pub mod constrained_slant;
-pub mod depth;
-pub mod differences;
-pub mod ellipsoid;
-pub mod flat_field;
-pub mod image;
-pub mod inliers;
-pub mod integrability;
-pub mod joint;
-pub mod lmeds;
-pub mod location;
-pub mod mat3;
-pub mod mat6;
-pub mod normals;
+pub mod math;
+pub mod picture;
+
+pub mod color;
+pub mod light;
 pub mod orientation;
-pub mod orthogonal;
-pub mod pixels;
-pub mod rank;
-pub mod regression;
+pub mod surface;
+
 pub mod render;
-pub mod rng;
-pub mod segment;
-pub mod select;
-pub mod shadows;
-pub mod slant;
+
+pub mod check;
 pub mod solve;
 pub mod stream;
-pub mod student_t;
-pub mod tilt;
-pub mod uncertainty;

@@ -12,8 +12,8 @@ pub use canvas::Canvas;
 pub use depth_map::{DepthMap, DepthMapError};
 pub use lights::{Lights, LightsError, MAX_LIGHTS};
 
-use crate::mat3;
-use crate::rng::Rng;
+use crate::math::mat3;
+use crate::math::rng::Rng;
 use cast_shadow::{Caster, NO_TILES};
 use libm::sqrt;
 

@@ -1,23 +1,25 @@
 //! The whole pipeline of section 3.4 over one workspace.
 
 mod fallback;
-mod lit;
+mod shadow_rejection;
 
 pub use fallback::SlantFallback;
 
-use crate::constrained_slant::{self, Candidates, MAX_CANDIDATES, SlantRoot};
-use crate::ellipsoid::{self, Ellipsoid};
-use crate::image::{Census, Image, Usable};
-use crate::inliers::{Band, Inliers};
-use crate::integrability;
-use crate::joint::{self, Joint};
-use crate::lmeds::{self, Fit, FitError, Method};
-use crate::location::{self, Location};
-use crate::mat3::{self, Mat3};
-use crate::orientation::{self, Orientation, RANK_THRESHOLD};
-use crate::pixels::Pixels;
-use crate::rank::{self, Rank};
-use crate::tilt::{TiltEstimator, Tilts};
+use crate::color::ellipsoid::{self, Ellipsoid};
+use crate::color::inliers::{Band, Inliers};
+use crate::color::lmeds::{self, Fit, FitError, Method};
+use crate::color::location::Location;
+use crate::color::norms;
+use crate::color::rank::{self, Rank};
+use crate::light::constrained_slant::{self, Candidates, MAX_CANDIDATES, SlantRoot};
+use crate::light::tilt::{TiltEstimator, Tilts};
+use crate::math::mat3::{self, Mat3};
+use crate::orientation::integrability;
+use crate::orientation::joint::{self, Joint};
+use crate::orientation::matrix::{self, Orientation, RANK_THRESHOLD};
+use crate::picture::Pixels;
+use crate::picture::{Image, PixelCounts, Usable};
+use crate::surface::uncertainty::Sources;
 use heapless::Vec;
 use libm::{atan2, hypot};
 
@@ -28,11 +30,11 @@ pub(crate) const SMALLEST_NOISE_MARGIN: f64 = 1.15;
 
 /// How the orthogonal transformation that the regression leaves open is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Road {
-    /// From integrability and outward normals together, see [`crate::joint`].
+pub enum OrientationMethod {
+    /// From integrability and outward normals together, see [`crate::orientation::joint`].
     Joint,
     /// The paper's: slants from tilts (section 3).
-    Paper,
+    Direct,
 }
 
 /// What to do.
@@ -45,10 +47,10 @@ pub struct Params {
     pub saturation: Option<f32>,
     /// Whether colors that a light does not reach are looked for and left out. Default true.
     pub reject_shadows: bool,
-    /// How F is oriented. Given tilts, and a picture that is too small for [`Road::Joint`], take the paper's road whatever
-    /// this is. Default [`Road::Joint`].
-    pub road: Road,
-    /// Where the tilts come from, on the paper's road. Default [`TiltEstimator::Pentland`].
+    /// How F is oriented. Given tilts, and a picture that is too small for [`OrientationMethod::Joint`], take the direct method whatever
+    /// this is. Default [`OrientationMethod::Joint`].
+    pub orientation_method: OrientationMethod,
+    /// Where the tilts come from, with the direct method. Default [`TiltEstimator::Pentland`].
     pub tilts: TiltEstimator,
     /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
     pub rank_threshold: f64,
@@ -62,7 +64,7 @@ impl Default for Params {
             lmeds: lmeds::Params::default(),
             saturation: None,
             reject_shadows: true,
-            road: Road::Joint,
+            orientation_method: OrientationMethod::Joint,
             tilts: TiltEstimator::Pentland,
             rank_threshold: RANK_THRESHOLD,
             fallback: SlantFallback::LeastSquares,
@@ -85,7 +87,8 @@ impl Params {
 
     /// Whether F is oriented as a whole, where it can be.
     pub(crate) const fn is_joint(&self) -> bool {
-        matches!(self.road, Road::Joint) && !matches!(self.tilts, TiltEstimator::Given(_))
+        matches!(self.orientation_method, OrientationMethod::Joint)
+            && !matches!(self.tilts, TiltEstimator::Given(_))
     }
 
     /// Which pixels of `image` can be used.
@@ -125,7 +128,7 @@ pub enum SlantSource {
     LeeRosenfeld,
     /// There is no root: Zheng and Chellappa's slants.
     ZhengChellappa,
-    /// F was oriented as a whole ([`Road::Joint`]): its slants follow from it.
+    /// F was oriented as a whole ([`OrientationMethod::Joint`]): its slants follow from it.
     Joint,
 }
 
@@ -163,7 +166,7 @@ pub struct Solution {
     /// How far it came.
     pub outcome: Outcome,
     /// What became of the pixels before the fit.
-    pub census: Census,
+    pub pixel_counts: PixelCounts,
     /// The root mean square of the colors along their principal axes, descending, in pixel values.
     pub color_deviations: [f64; 3],
     /// The ranks of colors and normals, of the inliers where there is a fit; `None` where there are no usable pixels.
@@ -180,7 +183,7 @@ pub struct Solution {
     pub ellipsoid: Option<Ellipsoid>,
     /// The tilts of the rows of F.
     pub tilts: Option<Tilts>,
-    /// How sure the orientation is; `None` on the paper's road.
+    /// How sure the orientation is; `None` with the direct method.
     pub joint: Option<Joint>,
     /// Slants and F.
     pub choice: Option<Choice>,
@@ -213,7 +216,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let mut solution = Solution::unsolved(usable.count(image), usable);
     let fit = lmeds::fit(image, usable, &params.lmeds, workspace).map(|fit| solution.fit = Some(fit));
     if fit.is_ok() && params.reject_shadows {
-        solution.leave_out_shadows(image, params, workspace);
+        solution.reject_shadows(image, params, workspace);
     }
     solution.model(image, fit, params, workspace)?;
     if solution.outcome != Outcome::NoTilt {
@@ -250,10 +253,24 @@ pub(crate) fn oriented(rows: &Mat3, root_inverse: &Mat3, rank_threshold: f64) ->
 }
 
 impl Solution {
+    /// What the uncertainty of its normals comes from; `None` where there is no F, or nothing is known of how sure its
+    /// rotation is (with the direct method).
+    #[must_use]
+    pub fn uncertainty_sources(&self) -> Option<Sources> {
+        let (fit, joint, choice) = (self.fit.as_ref()?, self.joint.as_ref()?, self.choice.as_ref()?);
+        (choice.orientation.rank == 3).then_some(Sources {
+            f: choice.orientation.f,
+            f_inverse: choice.orientation.f_inverse,
+            c: fit.covariance,
+            rotation: joint.covariance,
+            noise: fit.pixel_noise,
+        })
+    }
+
     /// As [`Self::unsolved`], in place.
-    pub(crate) fn restart(&mut self, census: Census) {
+    pub(crate) fn restart(&mut self, pixel_counts: PixelCounts) {
         self.outcome = Outcome::RankDeficient;
-        self.census = census;
+        self.pixel_counts = pixel_counts;
         self.color_deviations = [0.0; 3];
         self.inliers = Inliers::none(Usable::below(self.inliers.usable.saturation));
         self.inlier_count = 0;
@@ -262,10 +279,10 @@ impl Solution {
     }
 
     /// What is known before the fit.
-    pub(crate) fn unsolved(census: Census, usable: Usable) -> Self {
+    pub(crate) fn unsolved(pixel_counts: PixelCounts, usable: Usable) -> Self {
         Self {
             outcome: Outcome::RankDeficient,
-            census,
+            pixel_counts,
             color_deviations: [0.0; 3],
             rank: None,
             fit: None,
@@ -328,7 +345,7 @@ impl Solution {
             self.outcome = Outcome::RankDeficient;
             return Ok(());
         }
-        self.norm_location = location::norms(pixels, &self.inliers, &fit.z(), workspace);
+        self.norm_location = norms::location(pixels, &self.inliers, &fit.z(), workspace);
         if let Some(norms) = self.norm_location {
             self.inliers.norm = Band::norm(fit.z(), &norms, params.lmeds.rejection);
             self.inlier_count = self.inliers.count(pixels);
@@ -429,5 +446,5 @@ pub(crate) fn orient(
     tilts: [f64; 3],
     params: &Params,
 ) -> Orientation {
-    Orientation::new(orientation::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
+    Orientation::new(matrix::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
 }

@@ -4,7 +4,7 @@
 //! colors keeps a stratified sample, and ends with the model: everything that medians and fits are for is computed on the
 //! sample. The pass over its tilts sums the differences between neighbouring inliers, of this row and the one before it,
 //! and ends with F where there is one candidate for the slants. Where there are several, a pass over the slants sums the
-//! integral (15) of all of them at once, and ends with F. On the other road ([`Road::Joint`]) two passes take their
+//! integral (15) of all of them at once, and ends with F. with the joint method ([`OrientationMethod::Joint`]) two passes take their
 //! place: one sums the moments of the normals over cells, four rows at a time, for what outward normals say, and one over
 //! windows of several sizes, as many as the memory holds, for integrability; it ends with F. Where the memory holds cells
 //! of four pixels the first of them ends with F. Then normals and inliers of any row can be had, and one pass over a few
@@ -12,7 +12,7 @@
 //!
 //! Where the sample has room for all pixels the result is that of [`solve`](crate::solve::solve), bit for bit, but for the
 //! integral of a lone candidate, which is not computed (infinite). Without the feature `full-streams` there is the
-//! paper's road alone, shadows are kept, and errors of the fit are not computed (its covariance is zero).
+//! direct method alone, shadows are kept, and errors of the fit are not computed (its covariance is zero).
 
 mod cold;
 mod orientation;
@@ -23,15 +23,15 @@ mod warm;
 
 pub use warm::{Change, Drift};
 
-use crate::constrained_slant::{MAX_CANDIDATES, ROOM};
-use crate::image::{Census, Image, MAX_PIXELS, Sample, Usable};
-use crate::integrability;
-use crate::joint::{self, Outlook, STRIP, Survey};
-use crate::lmeds::{self, FitError, MIN_PIXELS};
-use crate::mat3::Mat3;
-use crate::regression::Moments;
-use crate::solve::{self, Outcome, Road, SlantFallback, Solution};
-use crate::tilt::{TiltEstimator, pentland};
+use crate::color::lmeds::{self, FitError, MIN_PIXELS};
+use crate::color::regression::Moments;
+use crate::light::constrained_slant::{MAX_CANDIDATES, ROOM};
+use crate::light::tilt::{TiltEstimator, pentland};
+use crate::math::mat3::Mat3;
+use crate::orientation::integrability;
+use crate::orientation::joint::{self, CellSums, STRIP, WindowSums};
+use crate::picture::{Image, MAX_PIXELS, PixelCounts, Sample, Usable};
+use crate::solve::{self, OrientationMethod, Outcome, SlantFallback, Solution};
 use rows::Rows;
 use strata::Strata;
 
@@ -43,7 +43,7 @@ pub const FULL: bool = cfg!(feature = "full-streams");
 pub struct Params {
     /// The pipeline's. `lmeds.sample_size` is how many colors the sample has room for, at least 24, here 2048 by default;
     /// tilts are Pentland's or given, and without a root slants are refused or fitted by least squares. Unless [`FULL`], the
-    /// road is the paper's and shadows are not looked for.
+    /// method is the paper's and shadows are not looked for.
     pub solve: solve::Params,
     /// Where less than this share of the usable pixels has a residual that the model accepts, in [0, 1], a frame does not
     /// refine it: a cold start is needed. Default 0.5, what least median of squares rests on.
@@ -56,8 +56,9 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         let lmeds = lmeds::Params { sample_size: 2048, ..lmeds::Params::default() };
-        let road = if FULL { Road::Joint } else { Road::Paper };
-        let solve = solve::Params { lmeds, road, reject_shadows: FULL, ..solve::Params::default() };
+        let orientation_method = if FULL { OrientationMethod::Joint } else { OrientationMethod::Direct };
+        let solve =
+            solve::Params { lmeds, orientation_method, reject_shadows: FULL, ..solve::Params::default() };
         Self { solve, smallest_share: 0.5, refine_pixels: 16_384 }
     }
 }
@@ -70,7 +71,7 @@ impl Params {
             && (0.0..=1.0).contains(&self.smallest_share)
             // Merged strata leave half of the sample.
             && self.solve.lmeds.sample_size as usize >= 2 * MIN_PIXELS
-            && (FULL || self.solve.road == Road::Paper && !self.solve.reject_shadows)
+            && (FULL || self.solve.orientation_method == OrientationMethod::Direct && !self.solve.reject_shadows)
             && matches!(self.solve.tilts, TiltEstimator::Pentland | TiltEstimator::Given(_))
             && matches!(self.solve.fallback, SlantFallback::Refuse | SlantFallback::LeastSquares)
     }
@@ -120,11 +121,16 @@ pub enum StreamError {
 
 /// How many `f32` [`Memory::values`] needs.
 #[must_use]
-pub const fn values_len(width: usize, height: usize, sample_size: u32, road: Road) -> usize {
+pub const fn values_len(
+    width: usize,
+    height: usize,
+    sample_size: u32,
+    orientation_method: OrientationMethod,
+) -> usize {
     let sample = room(width, height, sample_size).saturating_mul(5);
-    let rows = match road {
-        Road::Paper => width.saturating_mul(3),
-        Road::Joint => rows_len(width).saturating_add(joint::least_room(width, height)),
+    let rows = match orientation_method {
+        OrientationMethod::Direct => width.saturating_mul(3),
+        OrientationMethod::Joint => rows_len(width).saturating_add(joint::least_room(width, height)),
     };
     let larger = if sample > rows { sample } else { rows };
     if larger > ROOM { larger } else { ROOM }
@@ -166,8 +172,8 @@ enum Held {
         inverses: [Option<Mat3>; MAX_CANDIDATES],
         integrals: [integrability::Sum; MAX_CANDIDATES],
     },
-    Survey(Survey),
-    Outlook(Outlook),
+    CellSums(CellSums),
+    WindowSums(WindowSums),
 }
 
 /// What a stream remembers beside its buffers.
@@ -180,7 +186,7 @@ pub struct State {
     pass: Pass,
     /// The row that comes next; `None` between frames.
     row: Option<usize>,
-    census: Census,
+    pixel_counts: PixelCounts,
     strata: Strata,
     second_differences: (f64, u64),
     differences: pentland::Sums,
@@ -234,19 +240,19 @@ impl State {
             format,
             pass: Pass::Colors,
             row: None,
-            census: Census::default(),
+            pixel_counts: PixelCounts::default(),
             strata: Strata::new(lmeds.seed, room(width, height, lmeds.sample_size)),
             second_differences: (0.0, 0),
             differences: pentland::Sums::default(),
             history: pentland::Sums::default(),
             inlier_count: 0,
-            rows: Rows::new(height, &Census::default(), 0),
+            rows: Rows::new(height, &PixelCounts::default(), 0),
             held: Held::Nothing,
             moments: Moments::default(),
             scale: 1.0,
             drift: None,
             concluded: false,
-            solution: Solution::unsolved(Census::default(), usable),
+            solution: Solution::unsolved(PixelCounts::default(), usable),
         }
     }
 
@@ -286,7 +292,7 @@ impl<'m> Stream<'m> {
     pub fn new(state: &'m mut State, memory: Memory<'m>) -> Result<Self, StreamError> {
         let (width, height, sample_size) = (state.width, state.height, state.params.solve.lmeds.sample_size);
         let Memory { values, places } = memory;
-        let len = values_len(width, height, sample_size, state.params.solve.road);
+        let len = values_len(width, height, sample_size, state.params.solve.orientation_method);
         let values = values.get_mut(..len).ok_or(StreamError::TooShort)?;
         let places = places.get_mut(..places_len(width, height, sample_size)).ok_or(StreamError::TooShort)?;
         Ok(Self { state, memory: Memory { values, places } })
@@ -302,7 +308,7 @@ impl<'m> Stream<'m> {
     pub fn restart(&mut self) {
         let state = &mut *self.state;
         (state.row, state.pass, state.drift, state.concluded) = (None, Pass::Colors, None, false);
-        state.solution.restart(Census::default());
+        state.solution.restart(PixelCounts::default());
     }
 
     /// Begins a frame, and says what for. One that was not ended is forgotten.

@@ -12,9 +12,9 @@ use crate::status::{
 use crate::types::{count, finite_matrix, ofc_color_fit, ofc_inliers, ofc_tilts};
 use core::ffi::c_void;
 use ofc_core::check::{self, Check, CheckError, Norms};
-use ofc_core::orientation::Orientation;
-use ofc_core::rank::{self, Rank};
-use ofc_core::regression::Estimate;
+use ofc_core::color::rank::{self, Rank};
+use ofc_core::color::regression::Estimate;
+use ofc_core::orientation::matrix::Orientation;
 
 /// How well an answer explains its own picture. How to read it:
 ///

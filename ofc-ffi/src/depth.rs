@@ -11,9 +11,11 @@ use crate::status::{
 };
 use crate::types::count;
 use core::ffi::c_void;
-use ofc_core::depth::{self, DepthError, DepthInput, DepthParams, DepthResult, Method, Plane, Slopes};
-use ofc_core::image::span;
+use ofc_core::picture::span;
 use ofc_core::render::{Rows, normals_from_depth};
+use ofc_core::surface::depth::{
+    self, DepthError, DepthInput, DepthParams, DepthResult, Method, Plane, Slopes,
+};
 
 /// What to do where a slope is unusable: its normal is not finite or faces away, or its weight is zero.
 pub type ofc_depth_method = i32;

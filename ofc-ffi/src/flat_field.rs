@@ -7,8 +7,8 @@ use crate::status::{
     OFC_STATUS_STRIDE_TOO_SMALL, of, of_image_error, ofc_status,
 };
 use crate::types::count;
-use ofc_core::flat_field::{self, FlatField, FlatFieldError};
-use ofc_core::image::span;
+use ofc_core::picture::flat_field::{self, FlatField, FlatFieldError};
+use ofc_core::picture::span;
 
 /// What flat-fielding did.
 #[repr(C)]

@@ -6,7 +6,7 @@ use crate::status::{
     ofc_status,
 };
 use core::ffi::c_void;
-use ofc_core::image::{Image, Order, Sample, span};
+use ofc_core::picture::{Image, Order, Sample, span};
 
 /// How pixels are stored: one of OFC_PIXEL_*. 16-bit and float samples are in the machine's byte order.
 pub type ofc_pixel_format = i32;

@@ -9,11 +9,11 @@ use crate::status::{
 };
 use crate::types::{count, ofc_inliers, ofc_tilts};
 use core::ffi::c_void;
-use ofc_core::channel_maxima;
-use ofc_core::image::Image;
-use ofc_core::inliers::Inliers;
-use ofc_core::slant::{self, Estimate, Reach};
-use ofc_core::tilt::{Tilts, chojnacki, lee_rosenfeld, pentland, zheng_chellappa};
+use ofc_core::color::inliers::Inliers;
+use ofc_core::light::channel_maxima;
+use ofc_core::light::slant::{self, Estimate, Reach};
+use ofc_core::light::tilt::{Tilts, chojnacki, lee_rosenfeld, pentland, zheng_chellappa};
+use ofc_core::picture::Image;
 
 /// An estimator of tilts, for ofc_solve_params: one of OFC_TILT_*.
 pub type ofc_tilt_estimator = i32;

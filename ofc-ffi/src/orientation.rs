@@ -9,12 +9,12 @@ use crate::status::{
     OFC_STATUS_OK, OFC_STATUS_RANK_DEFICIENT, of, of_image_error, ofc_status,
 };
 use crate::types::{finite_matrix, ofc_inliers, ofc_integrability, ofc_orientation};
-use ofc_core::image::span;
-use ofc_core::inliers::Inliers;
-use ofc_core::integrability;
-use ofc_core::mat3::Mat3;
-use ofc_core::normals::{self, Length};
-use ofc_core::orientation::{Orientation, compose};
+use ofc_core::color::inliers::Inliers;
+use ofc_core::math::mat3::Mat3;
+use ofc_core::orientation::integrability;
+use ofc_core::orientation::matrix::{Orientation, compose};
+use ofc_core::picture::span;
+use ofc_core::surface::normals::{self, Length};
 
 /// What becomes of a normal's length: one of OFC_LENGTH_*.
 pub type ofc_length = i32;

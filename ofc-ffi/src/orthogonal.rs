@@ -1,4 +1,4 @@
-//! The orthogonal transformation by other roads than tilts, and slants from tilts and integrability.
+//! The orthogonal transformation by other methods than tilts, and slants from tilts and integrability.
 
 use crate::image::{image, ofc_image};
 use crate::pointers::{Extent, Out, Plain, disjoint, extent, input, input_array, workspace};
@@ -9,8 +9,10 @@ use crate::status::{
 };
 use crate::types::{finite_matrix, flat, ofc_inliers, ofc_integrability, ofc_slants};
 use core::ffi::c_void;
-use ofc_core::orthogonal::annealing::{self, Params};
-use ofc_core::orthogonal::{Found, OrthogonalError, Transformation, TwinChoice, closed_form, tilts_given};
+use ofc_core::orientation::orthogonal::annealing::{self, Params};
+use ofc_core::orientation::orthogonal::{
+    Found, OrthogonalError, Transformation, TwinChoice, closed_form, tilts_given,
+};
 
 /// What chose between the convex/concave twins: one of OFC_TWIN_*.
 pub type ofc_twin_choice = i32;
@@ -33,7 +35,7 @@ pub struct ofc_annealing_params {
     pub proposals: u32,
     /// Chains that share them, at least 1. Default 8.
     pub chains: u32,
-    /// Cells that proposals are judged on, at least 1. Default 2000.
+    /// Cells that proposals are evaluated on, at least 1. Default 2000.
     pub sample_cells: u32,
     /// Times that the polish may compute (15) over the whole picture, up to 10,000,000. Default 60.
     pub polish_evaluations: u32,
@@ -184,7 +186,7 @@ pub unsafe extern "C" fn ofc_annealing_params_default(params: *mut ofc_annealing
     }))
 }
 
-/// Bytes of workspace that ofc_orthogonal_annealing() needs: 36 for each cell that proposals are judged on.
+/// Bytes of workspace that ofc_orthogonal_annealing() needs: 36 for each cell that proposals are evaluated on.
 ///
 /// @return The size, or 0 when an argument is invalid.
 #[unsafe(no_mangle)]
@@ -317,7 +319,7 @@ pub extern "C" fn ofc_constrained_slants_integrable_workspace_size(
 /// @param cosines       (h12, h13, h23), each in [-1, 1].
 /// @param slack         How far the root mean square residual of eqs. 24 may be above the smallest, >= 0; 0.05 is what
 ///                      solve uses.
-/// @param sample_cells  Cells that slants are judged on, at least 1; 2000 is what solve uses.
+/// @param sample_cells  Cells that slants are evaluated on, at least 1; 2000 is what solve uses.
 /// @param workspace     ofc_constrained_slants_integrable_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT;
 ///                      contents do not matter.
 /// @param workspace_bytes  Its size.

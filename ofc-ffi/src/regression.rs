@@ -10,9 +10,9 @@ use crate::status::{
 };
 use crate::types::{ofc_color_fit, ofc_ellipsoid, ofc_inliers, ofc_lmeds_params, ofc_location};
 use core::ffi::c_void;
-use ofc_core::image::{MAX_PIXELS, Usable};
-use ofc_core::inliers::{Band, Inliers};
-use ofc_core::{ellipsoid, lmeds, location};
+use ofc_core::color::inliers::{Band, Inliers};
+use ofc_core::color::{ellipsoid, lmeds, location, norms};
+use ofc_core::picture::{MAX_PIXELS, Usable};
 
 /// Bytes of so many floats, 0 where there are none or too many.
 pub(crate) fn float_bytes(count: usize) -> usize {
@@ -229,7 +229,7 @@ pub unsafe extern "C" fn ofc_norm_location(
         // SAFETY: checked and disjoint.
         let scratch = unsafe { floats(workspace, need) };
         let found =
-            location::norms(&picture.view, &inliers, &form, scratch).ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
+            norms::location(&picture.view, &inliers, &form, scratch).ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
         location.write(found.into());
         accepted.write(Inliers { norm: Band::norm(form, &found, rejection), ..inliers }.into());
         Ok(OFC_STATUS_OK)

@@ -8,8 +8,8 @@ use crate::status::{
 };
 use crate::types::flat;
 use core::ffi::c_void;
-use ofc_core::image::span;
-use ofc_core::mat3::scale;
+use ofc_core::math::mat3::scale;
+use ofc_core::picture::span;
 use ofc_core::render::{self, Canvas, DepthMap, DepthMapError, Lights, Outputs, Params, RenderError, Rows};
 
 /// Lights at most.

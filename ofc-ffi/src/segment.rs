@@ -10,8 +10,8 @@ use crate::status::{
 };
 use crate::types::count;
 use core::ffi::c_void;
-use ofc_core::image::Usable;
-use ofc_core::segment::{self, MAX_REGIONS, Params, Region, SegmentError, patches};
+use ofc_core::color::segment::{self, MAX_REGIONS, Params, Region, SegmentError, patches};
+use ofc_core::picture::Usable;
 
 /// Regions at most.
 pub const OFC_MAX_REGIONS: usize = 16;

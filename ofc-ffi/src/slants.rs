@@ -7,7 +7,7 @@ use crate::status::{
 };
 use crate::types::ofc_slants;
 use core::f64::consts::FRAC_PI_2;
-use ofc_core::constrained_slant::{self, CurvePoint};
+use ofc_core::light::constrained_slant::{self, CurvePoint};
 
 /// No more slants than this are consistent with three tilts and three cosines.
 pub const OFC_MAX_CANDIDATES: usize = 8;

@@ -14,13 +14,15 @@ use crate::status::{
     ofc_status,
 };
 use crate::types::{
-    count, flat, ofc_census, ofc_color_fit, ofc_ellipsoid, ofc_inliers, ofc_lmeds_params, ofc_location,
-    ofc_orientation, ofc_slants, ofc_tilts,
+    count, flat, ofc_color_fit, ofc_ellipsoid, ofc_inliers, ofc_lmeds_params, ofc_location, ofc_orientation,
+    ofc_pixel_counts, ofc_slants, ofc_tilts,
 };
 use core::ffi::c_void;
-use ofc_core::joint::{Evidence, Joint};
-use ofc_core::solve::{self, Candidate, Choice, Params, Road, SlantFallback, SlantSource, Solution};
-use ofc_core::tilt::TiltEstimator;
+use ofc_core::light::tilt::TiltEstimator;
+use ofc_core::orientation::joint::{Evidence, Joint};
+use ofc_core::solve::{
+    self, Candidate, Choice, OrientationMethod, Params, SlantFallback, SlantSource, Solution,
+};
 
 /// Where the slants come from: one of OFC_SLANTS_*.
 pub type ofc_slant_source = i32;
@@ -39,20 +41,20 @@ pub const OFC_SLANTS_LEE_ROSENFELD: i32 = 5;
 /// There is no root: Zheng and Chellappa's slants.
 pub const OFC_SLANTS_ZHENG_CHELLAPPA: i32 = 6;
 
-/// F was oriented as a whole (OFC_ROAD_JOINT): its slants follow from it.
+/// F was oriented as a whole (OFC_ORIENTATION_JOINT): its slants follow from it.
 pub const OFC_SLANTS_JOINT: i32 = 7;
 
-/// How the orthogonal transformation that the regression leaves open is found: one of OFC_ROAD_*.
-pub type ofc_road = i32;
+/// How the orthogonal transformation that the regression leaves open is found: one of OFC_ORIENTATION_*.
+pub type ofc_orientation_method = i32;
 /// From integrability on windows of several sizes and from normals that point outward, each as far as it can be trusted
 /// in this picture.
-pub const OFC_ROAD_JOINT: i32 = 0;
+pub const OFC_ORIENTATION_JOINT: i32 = 0;
 /// The paper's: slants from tilts (section 3). Good on closed convex shapes, poor on relief that touches the frame.
-pub const OFC_ROAD_PAPER: i32 = 1;
+pub const OFC_ORIENTATION_DIRECT: i32 = 1;
 
 /// What decided the orientation: one of OFC_EVIDENCE_*.
 pub type ofc_evidence = i32;
-/// Tilts, on the paper's road: nothing is known of how sure they are.
+/// Tilts, with the direct method: nothing is known of how sure they are.
 pub const OFC_EVIDENCE_TILTS_ALONE: i32 = 0;
 /// Mostly that normals point outward, which is what tilts rest on.
 pub const OFC_EVIDENCE_OUTWARD: i32 = 1;
@@ -90,16 +92,16 @@ pub struct ofc_solve_params {
     pub tilt_estimator: ofc_tilt_estimator,
     /// What to do where eqs. 25 have no root, one of OFC_FALLBACK_*. Default OFC_FALLBACK_LEAST_SQUARES.
     pub slant_fallback: ofc_slant_fallback,
-    /// How F is oriented, one of OFC_ROAD_*. Given tilts, and a picture that is too small for OFC_ROAD_JOINT, take the paper's
-    /// road whatever this is; tilt_estimator and slant_fallback are for that road. Default OFC_ROAD_JOINT.
-    pub road: ofc_road,
+    /// How F is oriented, one of OFC_ORIENTATION_*. Given tilts, and a picture that is too small for OFC_ORIENTATION_JOINT, take the paper's
+    /// method whatever this is; tilt_estimator and slant_fallback are for that method. Default OFC_ORIENTATION_JOINT.
+    pub orientation_method: ofc_orientation_method,
     /// 0 leaves out colors that one of the lights does not reach, where such are found; 1 keeps them. Default 0.
     pub keep_shadows: i32,
     /// Must be zero.
     pub reserved: [u32; 4],
 }
 
-/// How sure the orientation of F is; all zero on the paper's road. Errors of C, which turn and bend normals as well, come on
+/// How sure the orientation of F is; all zero with the direct method. Errors of C, which turn and bend normals as well, come on
 /// top of it.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
@@ -110,7 +112,7 @@ pub struct ofc_confidence {
     /// The root mean square angle by which a normal is expected to be turned, in radians.
     pub error_rad: f64,
     /// Convex or concave: from 0 (the surface is as much a dome as a hollow) to 1 (all of it is a dome).
-    pub dome: f64,
+    pub convexity: f64,
     /// How much less likely the next best orientation elsewhere is, as a difference of log likelihoods; infinite where there
     /// is none.
     pub second_best: f64,
@@ -137,7 +139,7 @@ pub struct ofc_solution {
     /// Zero.
     pub reserved: u32,
     /// What became of the pixels before the fit.
-    pub census: ofc_census,
+    pub pixel_counts: ofc_pixel_counts,
     /// The regression: C with its errors, dispersion, R^2, inliers after the first rejection.
     pub fit: ofc_color_fit,
     /// Effective ranks of the colors and normals of the inliers: F can be recovered where both are 3.
@@ -150,11 +152,11 @@ pub struct ofc_solution {
     pub ellipsoid: ofc_ellipsoid,
     /// Tilts of the rows of F.
     pub tilts: ofc_tilts,
-    /// Slants of the rows of F, from +z: in [0, pi/2] on the paper's road, in [0, pi] on the other.
+    /// Slants of the rows of F, from +z: in [0, pi/2] with the direct method, in [0, pi] on the other.
     pub slant_rad: [f64; 3],
     /// How sure the orientation is.
     pub confidence: ofc_confidence,
-    /// On the paper's road, all slants consistent with the tilts, by ascending first slant.
+    /// with the direct method, all slants consistent with the tilts, by ascending first slant.
     pub candidates: [ofc_slants; OFC_MAX_CANDIDATES],
     /// F and its inverse.
     pub orientation: ofc_orientation,
@@ -173,7 +175,7 @@ impl ofc_solve_params {
             lmeds: _,
             saturation: _,
             reject_shadows: _,
-            road: _,
+            orientation_method: _,
             tilts: _,
             rank_threshold,
             fallback: _,
@@ -184,7 +186,7 @@ impl ofc_solve_params {
             tilt_rad: [0.0; 3],
             tilt_estimator: OFC_TILT_PENTLAND,
             slant_fallback: OFC_FALLBACK_LEAST_SQUARES,
-            road: OFC_ROAD_JOINT,
+            orientation_method: OFC_ORIENTATION_JOINT,
             keep_shadows: 0,
             reserved: [0; 4],
         }
@@ -197,7 +199,7 @@ impl ofc_solve_params {
             tilt_rad,
             tilt_estimator,
             slant_fallback,
-            road,
+            orientation_method,
             keep_shadows,
             reserved,
         } = self;
@@ -222,9 +224,9 @@ impl ofc_solve_params {
             OFC_TILT_GIVEN => TiltEstimator::Given(tilt_rad),
             _ => return Err(OFC_STATUS_INVALID_PARAMETER),
         };
-        let road = match road {
-            OFC_ROAD_JOINT => Road::Joint,
-            OFC_ROAD_PAPER => Road::Paper,
+        let orientation_method = match orientation_method {
+            OFC_ORIENTATION_JOINT => OrientationMethod::Joint,
+            OFC_ORIENTATION_DIRECT => OrientationMethod::Direct,
             _ => return Err(OFC_STATUS_INVALID_PARAMETER),
         };
         let reject_shadows = match keep_shadows {
@@ -232,18 +234,19 @@ impl ofc_solve_params {
             1 => false,
             _ => return Err(OFC_STATUS_INVALID_PARAMETER),
         };
-        let params = Params { lmeds, saturation, reject_shadows, road, tilts, rank_threshold, fallback };
+        let params =
+            Params { lmeds, saturation, reject_shadows, orientation_method, tilts, rank_threshold, fallback };
         if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
     }
 }
 
 impl From<Joint> for ofc_confidence {
     fn from(joint: Joint) -> Self {
-        let Joint { rows: _, covariance, evidence, dome, second_best } = joint;
+        let Joint { rows: _, covariance, evidence, convexity, second_best } = joint;
         Self {
             covariance: flat(&covariance),
             error_rad: joint.expected_error(),
-            dome,
+            convexity,
             second_best,
             evidence: match evidence {
                 Evidence::Outward => OFC_EVIDENCE_OUTWARD,
@@ -268,7 +271,7 @@ impl ofc_solution {
     pub(crate) fn set(&mut self, solution: &Solution) {
         let Solution {
             outcome,
-            census,
+            pixel_counts,
             color_deviations,
             rank,
             fit,
@@ -283,7 +286,7 @@ impl ofc_solution {
         self.outcome = of_outcome(*outcome);
         self.inlier_count = count(*inlier_count);
         self.reserved = 0;
-        self.census = (*census).into();
+        self.pixel_counts = (*pixel_counts).into();
         self.fit = fit.as_ref().map_or(ofc_color_fit::default(), ofc_color_fit::from);
         self.fit.color_deviations = fit.as_ref().map_or(*color_deviations, |fit| fit.color_deviations);
         self.rank = rank.map_or(ofc_rank::default(), ofc_rank::from);

@@ -1,8 +1,8 @@
 //! What every call returns.
 
 use core::ffi::{CStr, c_char};
-use ofc_core::image::ImageError;
-use ofc_core::lmeds::FitError;
+use ofc_core::color::lmeds::FitError;
+use ofc_core::picture::ImageError;
 use ofc_core::solve::Outcome;
 use ofc_core::stream::StreamError;
 
@@ -52,7 +52,7 @@ pub const OFC_STATUS_INVALID_PARAMETER: i32 = -31;
 pub const OFC_STATUS_RESERVED_NOT_ZERO: i32 = -32;
 /// The solution handed in holds no F: the solve that made it did not return OFC_STATUS_OK.
 pub const OFC_STATUS_NOT_SOLVED: i32 = -33;
-/// The solution handed in does not know how sure its orientation is: it was found by tilts alone, on the paper's road.
+/// The solution handed in does not know how sure its orientation is: it was found by tilts alone, with the direct method.
 pub const OFC_STATUS_NO_COVARIANCE: i32 = -34;
 
 /// Fewer usable pixels than a fit needs.

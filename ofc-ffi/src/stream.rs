@@ -6,15 +6,15 @@ use crate::pointers::{
     workspace,
 };
 use crate::regression::pixel_count;
-use crate::solve::{OFC_ROAD_PAPER, ofc_solution, ofc_solve_params};
+use crate::solve::{OFC_ORIENTATION_DIRECT, ofc_solution, ofc_solve_params};
 use crate::status::{
     OFC_STATUS_COLD_START_NEEDED, OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_STREAM,
     OFC_STATUS_NOT_SOLVED, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO, OFC_STATUS_TOO_LARGE, of, of_outcome,
     of_stream_error, ofc_status,
 };
 use core::ffi::c_void;
-use ofc_core::image::Image;
-use ofc_core::solve::Road;
+use ofc_core::picture::Image;
+use ofc_core::solve::OrientationMethod;
 use ofc_core::stream::{self, Change, Drift, Memory, Params, Pass, State, Stream, StreamError};
 
 /// What the rows of a stream's frame are for: one of OFC_PASS_*.
@@ -27,9 +27,9 @@ pub const OFC_PASS_TILTS: i32 = 2;
 pub const OFC_PASS_SLANTS: i32 = 3;
 /// F is there, and the frame refines it.
 pub const OFC_PASS_REFINE: i32 = 4;
-/// A cold start on OFC_ROAD_JOINT: how normals point outward; where the sample has room for all pixels also F.
+/// A cold start with OFC_ORIENTATION_JOINT: how normals point outward; where the sample has room for all pixels also F.
 pub const OFC_PASS_OUTWARD: i32 = 5;
-/// A cold start on OFC_ROAD_JOINT: integrability, and F.
+/// A cold start with OFC_ORIENTATION_JOINT: integrability, and F.
 pub const OFC_PASS_INTEGRABILITY: i32 = 6;
 
 /// What a stream does. Set by ofc_stream_params_default().
@@ -39,7 +39,7 @@ pub struct ofc_stream_params {
     /// As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
     /// tilt_estimator is OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
     /// OFC_FALLBACK_LEAST_SQUARES. A library built without the feature `full-streams`, for small memories, knows
-    /// OFC_ROAD_PAPER with keep_shadows alone, and these are then the defaults.
+    /// OFC_ORIENTATION_DIRECT with keep_shadows alone, and these are then the defaults.
     pub solve: ofc_solve_params,
     /// Where less than this share of the usable pixels fits the model, a frame does not refine it and
     /// OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
@@ -96,24 +96,25 @@ const _: () = assert!(size_of::<Head>() <= STATE_BYTES && align_of::<Head>() <= 
 /// The first word of a stream.
 const MAGIC: u64 = 0x6d61_6572_7473_666f;
 
-/// The words of a stream for so many pixels in a row and rows, and so many sampled colors on its road; the last one checks
+/// The words of a stream for so many pixels in a row and rows, and so many sampled colors on its method; the last one checks
 /// the others.
 fn words(size: u64, sample: u64) -> [u64; 4] {
     const ODD: u64 = 0x9e37_79b9_7f4a_7c15;
     [MAGIC, size, sample, (MAGIC ^ size).wrapping_mul(ODD).rotate_left(32) ^ sample.wrapping_mul(ODD)]
 }
 
-/// The sampled colors and the road as one word.
+/// The sampled colors and the method as one word.
 fn sample_word(params: &Params) -> u64 {
-    let road = u64::from(params.solve.road == Road::Joint);
-    road << 32 | u64::from(params.solve.lmeds.sample_size)
+    let orientation_method = u64::from(params.solve.orientation_method == OrientationMethod::Joint);
+    orientation_method << 32 | u64::from(params.solve.lmeds.sample_size)
 }
 
 /// How many floats and bytes lie behind the state, and how many bytes all of it takes; 0 when that is too much.
 fn sizes(width: usize, height: usize, sample: u64) -> (usize, usize, usize) {
     let sample_size = sample as u32;
-    let road = if sample >> 32 == 0 { Road::Paper } else { Road::Joint };
-    let values = stream::values_len(width, height, sample_size, road);
+    let orientation_method =
+        if sample >> 32 == 0 { OrientationMethod::Direct } else { OrientationMethod::Joint };
+    let values = stream::values_len(width, height, sample_size, orientation_method);
     let places = stream::places_len(width, height, sample_size);
     let bytes = values.checked_mul(4).and_then(|bytes| bytes.checked_add(places + STATE_BYTES + 7));
     (values, places, bytes.map_or(0, |bytes| bytes / 8 * 8))
@@ -176,7 +177,7 @@ pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_param
         let mut defaults = ofc_solve_params::defaults();
         defaults.lmeds.sample_size = solve.lmeds.sample_size;
         if !stream::FULL {
-            (defaults.road, defaults.keep_shadows) = (OFC_ROAD_PAPER, 1);
+            (defaults.orientation_method, defaults.keep_shadows) = (OFC_ORIENTATION_DIRECT, 1);
         }
         out.write(ofc_stream_params { solve: defaults, smallest_share, refine_pixels, reserved: [0; 3] });
         OFC_STATUS_OK
@@ -184,7 +185,7 @@ pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_param
 }
 
 /// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 5184 or what rows
-/// take are more than 20 for each color. Rows take 12 for each pixel of a row on OFC_ROAD_PAPER, and on OFC_ROAD_JOINT 36
+/// take are more than 20 for each color. Rows take 12 for each pixel of a row with OFC_ORIENTATION_DIRECT, and with OFC_ORIENTATION_JOINT 36
 /// and 116 for each of 192 cells. OFC_STREAM_SIZE(width, height) is no less for the default parameters, for
 /// static buffers: 47,104 bytes at 320 x 240.
 ///
@@ -210,19 +211,19 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 ///     }
 ///     ofc_status status = ofc_stream_end(stream, &pass);
 ///
-/// A cold start takes the pass over colors and those of its road, all of one frame or of consecutive frames of a scene at
-/// rest: on OFC_ROAD_JOINT outward normals and integrability, on OFC_ROAD_PAPER tilts, and where eqs. 25 have several roots
+/// A cold start takes the pass over colors and those of its method, all of one frame or of consecutive frames of a scene at
+/// rest: with OFC_ORIENTATION_JOINT outward normals and integrability, with OFC_ORIENTATION_DIRECT tilts, and where eqs. 25 have several roots
 /// slants. Then there is F; a few rows of every
 /// further frame refine it, and for the others ofc_stream_row() does next to nothing. Medians and fits of
 /// a cold start are those of a stratified sample of the colors, and integrability is that of as many windows as there is
 /// room for. Where the sample has room for all pixels, the solution is that of ofc_solve() to the bit, but for the
-/// integral of a lone candidate, which is not computed (infinite); on OFC_ROAD_PAPER it is enough that it holds all usable
+/// integral of a lone candidate, which is not computed (infinite); with OFC_ORIENTATION_DIRECT it is enough that it holds all usable
 /// ones. Without the feature `full-streams` fit.covariance is zero.
 ///
-/// Frames that refine follow C and the strength of the lights. On OFC_ROAD_PAPER they also follow the tilts; on
-/// OFC_ROAD_JOINT lights that turn about the scene as a whole are not seen, and need ofc_stream_restart().
+/// Frames that refine follow C and the strength of the lights. With OFC_ORIENTATION_DIRECT they also follow the tilts; on
+/// OFC_ORIENTATION_JOINT lights that turn about the scene as a whole are not seen, and need ofc_stream_restart().
 ///
-/// Stack, for this call and every other that takes a stream: below 4 KiB on OFC_ROAD_PAPER, 20 KiB on OFC_ROAD_JOINT.
+/// Stack, for this call and every other that takes a stream: below 4 KiB with OFC_ORIENTATION_DIRECT, 20 KiB with OFC_ORIENTATION_JOINT.
 ///
 /// @param width, height  Of the frames.
 /// @param format     How samples are stored; their order and planes are each row's own.
@@ -376,7 +377,7 @@ pub unsafe extern "C" fn ofc_stream_end(stream: *mut ofc_stream, pass: *mut ofc_
 /// @param stream    The stream.
 /// @param solution  Output. After frames that refined it: F, its stages and the fit are the last frame's, rank is that of
 ///                  the cold start, candidates have no integral (infinite), tilts come from the axes alone, covariances
-///                  are those of the cold start, and counts and census are of the pixels that were looked at.
+///                  are those of the cold start, and counts and pixel counts are of the pixels that were looked at.
 /// @return As ofc_solve(), for the cold start; OFC_STATUS_NOT_SOLVED, `solution` untouched, before its last pass;
 ///         OFC_STATUS_NO_STREAM; the status of an invalid argument.
 #[unsafe(no_mangle)]

@@ -3,16 +3,17 @@
 
 use crate::pointers::Plain;
 use crate::status::{OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_RESERVED_NOT_ZERO, ofc_status};
-use ofc_core::image::{Census, Usable};
-use ofc_core::inliers::{Band, Inliers};
-use ofc_core::lmeds::{self, Fit};
-use ofc_core::location::Location;
-use ofc_core::mat3::Mat3;
-use ofc_core::orientation::Orientation;
-use ofc_core::regression::Estimate;
-use ofc_core::shadows::{Face, Shadows};
-use ofc_core::tilt::Tilts;
-use ofc_core::{ellipsoid::Ellipsoid, integrability::Integrability};
+use ofc_core::color::ellipsoid::Ellipsoid;
+use ofc_core::color::inliers::{Band, Inliers};
+use ofc_core::color::lmeds::{self, Fit};
+use ofc_core::color::location::Location;
+use ofc_core::color::regression::Estimate;
+use ofc_core::light::tilt::Tilts;
+use ofc_core::math::mat3::Mat3;
+use ofc_core::orientation::integrability::Integrability;
+use ofc_core::orientation::matrix::Orientation;
+use ofc_core::picture::{Face, Faces};
+use ofc_core::picture::{PixelCounts, Usable};
 
 macro_rules! plain {
     ($($name:ident),+ $(,)?) => {
@@ -22,7 +23,7 @@ macro_rules! plain {
 }
 plain!(
     ofc_lmeds_params,
-    ofc_census,
+    ofc_pixel_counts,
     ofc_estimate,
     ofc_inliers,
     ofc_shadow_face,
@@ -88,7 +89,7 @@ pub struct ofc_lmeds_params {
     pub min_subsets: u32,
     /// Exactly this many subsets, up to 10,000,000; 0 for as many as confidence and outlier_share ask for. Default 0.
     pub subsets: u32,
-    /// Pixels that the search looks at, at least 12; the result is judged on all. Default 10,000.
+    /// Pixels that the search looks at, at least 12; the result is evaluated on all. Default 10,000.
     pub sample_size: u32,
     /// OFC_FIT_LEAST_MEDIAN or OFC_FIT_LEAST_SQUARES. Default OFC_FIT_LEAST_MEDIAN.
     pub method: ofc_fit_method,
@@ -172,7 +173,7 @@ impl ofc_lmeds_params {
 /// What becomes of the pixels before any fit; the counts add up to width times height.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
-pub struct ofc_census {
+pub struct ofc_pixel_counts {
     /// Pixels that the fit may use.
     pub usable: i32,
     /// Left out by the mask.
@@ -191,9 +192,9 @@ pub struct ofc_census {
     pub reserved: u32,
 }
 
-impl From<Census> for ofc_census {
-    fn from(census: Census) -> Self {
-        let Census { usable, masked_out, non_finite, dark, saturated, shaded, largest } = census;
+impl From<PixelCounts> for ofc_pixel_counts {
+    fn from(pixel_counts: PixelCounts) -> Self {
+        let PixelCounts { usable, masked_out, non_finite, dark, saturated, shaded, largest } = pixel_counts;
         Self {
             usable: count(usable),
             masked_out: count(masked_out),
@@ -275,7 +276,7 @@ pub struct ofc_inliers {
 
 impl From<Inliers> for ofc_inliers {
     fn from(inliers: Inliers) -> Self {
-        let Inliers { usable: Usable { saturation, shadows }, residual, norm } = inliers;
+        let Inliers { usable: Usable { saturation, shadow_faces }, residual, norm } = inliers;
         Self {
             saturation: f64::from(saturation),
             residual_form: residual.form,
@@ -284,7 +285,7 @@ impl From<Inliers> for ofc_inliers {
             norm_form: norm.form,
             norm_low: norm.low,
             norm_high: norm.high,
-            shadow_faces: shadows.faces.map(|Face { normal, least }| ofc_shadow_face { normal, least }),
+            shadow_faces: shadow_faces.faces.map(|Face { normal, least }| ofc_shadow_face { normal, least }),
         }
     }
 }
@@ -302,10 +303,10 @@ impl ofc_inliers {
             norm_high,
             shadow_faces,
         } = self;
-        let shadows =
-            Shadows { faces: shadow_faces.map(|ofc_shadow_face { normal, least }| Face { normal, least }) };
+        let shadow_faces =
+            Faces { faces: shadow_faces.map(|ofc_shadow_face { normal, least }| Face { normal, least }) };
         Inliers {
-            usable: Usable { saturation: saturation as f32, shadows },
+            usable: Usable { saturation: saturation as f32, shadow_faces },
             residual: Band { form: residual_form, low: residual_low, high: residual_high },
             norm: Band { form: norm_form, low: norm_low, high: norm_high },
         }

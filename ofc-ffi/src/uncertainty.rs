@@ -8,9 +8,9 @@ use crate::status::{
     OFC_STATUS_OK, of, of_image_error, ofc_status,
 };
 use crate::types::{finite_matrix, flat};
-use ofc_core::image::span;
-use ofc_core::regression::whole;
-use ofc_core::uncertainty::{Sources, Uncertainty, of_f, of_f_inverse, of_turn};
+use ofc_core::color::regression::whole;
+use ofc_core::picture::span;
+use ofc_core::surface::uncertainty::{Sources, Uncertainty, of_f, of_f_inverse, of_turn};
 
 /// What squares and products of errors are expected to be; symmetric matrices, row-major. Errors are those of one picture
 /// among many: all its pixels share them.
@@ -58,7 +58,7 @@ fn sources(solution: &ofc_solution) -> Result<Sources, ofc_status> {
 /// @param solution    What ofc_solve() wrote with OFC_STATUS_OK.
 /// @param covariance  Output.
 /// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's
-///         road); OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+///         method); OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_solution_covariance(
     solution: *const ofc_solution,
@@ -103,7 +103,7 @@ fn row_major<const N: usize, const SQUARE: usize>(matrix: &[[f64; N]; N]) -> [f6
 ///                  normal. Exact colors make 0.
 /// @param angle_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
 /// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's
-///         road), of which nobody knows how sure it is; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+///         method), of which nobody knows how sure it is; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_normals_uncertainty(
     image: *const ofc_image,

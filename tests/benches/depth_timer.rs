@@ -3,7 +3,7 @@
 //! `depth_timer NORMALS.f32 MASK.u8 WIDTH HEIGHT DEPTH.f32 [METHOD [REPEATS]]` reads tightly packed normals (three f32 a
 //! pixel) and mask, writes the depth, and prints the best and the median time in milliseconds and the result.
 
-use ofc_core::depth::{DepthInput, DepthParams, Method, Plane, Slopes, integrate, workspace_len};
+use ofc_core::surface::depth::{DepthInput, DepthParams, Method, Plane, Slopes, integrate, workspace_len};
 use std::time::Instant;
 
 fn floats(path: &str) -> Vec<f32> {

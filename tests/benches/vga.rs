@@ -4,13 +4,13 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use ofc_core::depth::{self, DepthInput, DepthParams, Method, Plane, Slopes};
-use ofc_core::image::{Order, Sample, Usable, Window};
-use ofc_core::normals::{Length, compute};
+use ofc_core::color::segment;
+use ofc_core::math::rng::Rng;
+use ofc_core::picture::{Order, Sample, Usable, Window};
 use ofc_core::render::{self, Canvas, Lights, Outputs, render};
-use ofc_core::rng::Rng;
-use ofc_core::segment;
-use ofc_core::solve::{Outcome, Params, Road, Solution, solve, workspace_len};
+use ofc_core::solve::{OrientationMethod, Outcome, Params, Solution, solve, workspace_len};
+use ofc_core::surface::depth::{self, DepthInput, DepthParams, Method, Plane, Slopes};
+use ofc_core::surface::normals::{Length, compute};
 use ofc_tests::depth_maps::{TABLE_1_COLORS, bust, table_1_directions, terrain};
 use ofc_tests::linear_scenes::{Encoded, Layout, Scene, ellipsoid, three_lights};
 use ofc_tests::shaded_scenes::{self, CLEAN, OTHER, cap, moved};
@@ -31,11 +31,11 @@ fn scene(sample: Sample) -> Encoded {
 }
 
 fn answer(encoded: &Encoded, workspace: &mut [f32]) -> Solution {
-    answer_by(Road::Joint, encoded, workspace)
+    answer_by(OrientationMethod::Joint, encoded, workspace)
 }
 
-fn answer_by(road: Road, encoded: &Encoded, workspace: &mut [f32]) -> Solution {
-    let params = Params { road, ..Params::default() };
+fn answer_by(orientation_method: OrientationMethod, encoded: &Encoded, workspace: &mut [f32]) -> Solution {
+    let params = Params { orientation_method, ..Params::default() };
     let solution = solve(&black_box(encoded).image(), &params, workspace).expect("enough pixels");
     assert_eq!(solution.outcome, Outcome::Solved);
     solution
@@ -45,12 +45,12 @@ fn workspace() -> Vec<f32> {
     vec![0.0; workspace_len(PIXELS, Params::default().lmeds.sample_size)]
 }
 
-/// The whole pipeline with default parameters, and on the paper's road, for what the other one adds: a quarter at most.
-#[divan::bench(args = [Road::Joint, Road::Paper], consts = [false, true])]
-fn solve_vga<const FLOATS: bool>(bencher: Bencher, road: Road) {
+/// The whole pipeline with default parameters, and with the direct method, for what the other one adds: a quarter at most.
+#[divan::bench(args = [OrientationMethod::Joint, OrientationMethod::Direct], consts = [false, true])]
+fn solve_vga<const FLOATS: bool>(bencher: Bencher, orientation_method: OrientationMethod) {
     let sample = if FLOATS { Sample::F32 } else { Sample::U8 };
     let (encoded, mut workspace) = (scene(sample), workspace());
-    bencher.bench_local(|| answer_by(road, &encoded, &mut workspace));
+    bencher.bench_local(|| answer_by(orientation_method, &encoded, &mut workspace));
 }
 
 /// A normal for every inlier; the count is of all pixels of the picture.

@@ -241,7 +241,7 @@ static void segmentation(void **state)
     image.mask_stride_bytes = WIDTH;
     static ofc_solution solution;
     assert_int_equal(ofc_solve(&image, &stages.params, workspace, sizeof workspace, NULL, &solution), OFC_STATUS_OK);
-    assert_int_equal(solution.census.usable, pixels);
+    assert_int_equal(solution.pixel_counts.usable, pixels);
     static uint16_t labels[PIXELS];
     REFUSED(OFC_STATUS_NULL_POINTER, out, MARK(NULL, WIDTH, HEIGHT, 1, out.mask));
     REFUSED(OFC_STATUS_NULL_POINTER, out, MARK(labels, WIDTH, HEIGHT, 1, NULL));

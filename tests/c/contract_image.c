@@ -104,8 +104,8 @@ static void masks(void **state)
     ofc_solve_params params = stages.params;
     params.lmeds.saturation = 255;
     assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &solution), OFC_STATUS_OK);
-    assert_int_equal(solution.census.masked_out, expected.census.dark);
-    assert_int_equal(solution.census.dark, 0);
+    assert_int_equal(solution.pixel_counts.masked_out, expected.pixel_counts.dark);
+    assert_int_equal(solution.pixel_counts.dark, 0);
     assert_memory_equal(&solution.orientation, &expected.orientation, sizeof solution.orientation);
     image.mask_stride_bytes = SIZE_MAX;
     assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &solution), OFC_STATUS_TOO_LARGE);
@@ -130,9 +130,9 @@ static void pixels_that_are_left_out(void **state)
     ofc_solve_params params = stages.params;
     params.lmeds.saturation = 255;
     assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &solution), OFC_STATUS_OK);
-    assert_int_equal(solution.census.non_finite, 3);
-    assert_int_equal(solution.census.saturated, 2);
-    assert_int_equal(solution.census.usable, expected.census.usable - 5);
+    assert_int_equal(solution.pixel_counts.non_finite, 3);
+    assert_int_equal(solution.pixel_counts.saturated, 2);
+    assert_int_equal(solution.pixel_counts.usable, expected.pixel_counts.usable - 5);
 }
 
 static struct {

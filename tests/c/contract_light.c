@@ -215,7 +215,7 @@ static void solve_with_any_tilts(void **state)
     params = stages.params;
     params.lmeds.method = OFC_FIT_LEAST_SQUARES;
     assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &solution), OFC_STATUS_OK);
-    assert_int_equal(solution.fit.inlier_count, solution.census.usable);
+    assert_int_equal(solution.fit.inlier_count, solution.pixel_counts.usable);
     params.lmeds.method = 2;
     assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &solution),
                      OFC_STATUS_INVALID_PARAMETER);

@@ -1,4 +1,4 @@
-/* The orthogonal transformation by other roads, and slants from tilts and integrability. */
+/* The orthogonal transformation by other methods, and slants from tilts and integrability. */
 #include "contract.h"
 
 static struct {

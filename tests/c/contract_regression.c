@@ -180,7 +180,7 @@ static void inliers_mark(void **state)
     int32_t usable = 0;
     for (int i = 0; i < PIXELS; i++)
         usable += out.mask[i] == 255;
-    assert_int_equal(usable, stages.solution.census.usable);
+    assert_int_equal(usable, stages.solution.pixel_counts.usable);
 }
 
 static void ellipsoid_decompose(void **state)

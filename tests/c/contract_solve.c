@@ -116,8 +116,8 @@ static void bad_parameters(void **state)
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[3], 1);
     BAD(OFC_STATUS_INVALID_PARAMETER, keep_shadows, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, keep_shadows, -1);
-    BAD(OFC_STATUS_INVALID_PARAMETER, road, 2);
-    BAD(OFC_STATUS_INVALID_PARAMETER, road, -1);
+    BAD(OFC_STATUS_INVALID_PARAMETER, orientation_method, 2);
+    BAD(OFC_STATUS_INVALID_PARAMETER, orientation_method, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[0], 1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[3], 1);
 #undef BAD
@@ -148,7 +148,7 @@ static void pictures_without_an_answer(void **state)
     memset(pixels, 90, sizeof pixels);
     assert_int_equal(solve(&image), OFC_STATUS_RANK_DEFICIENT);
     assert_int_equal(out.solution.outcome, OFC_STATUS_RANK_DEFICIENT);
-    assert_int_equal(out.solution.census.usable, PIXELS);
+    assert_int_equal(out.solution.pixel_counts.usable, PIXELS);
     assert_int_equal(out.solution.orientation.rank, 0);
     assert_int_equal(out.solution.slant_source, OFC_SLANTS_NONE);
     assert_int_equal(out.solution.chosen, -1);
@@ -178,9 +178,9 @@ static void answers(void **state)
         inliers += out.mask[i] != 0;
     }
     assert_int_equal(out.solution.inlier_count, inliers);
-    const ofc_census *census = &out.solution.census;
-    assert_int_equal(census->usable + census->masked_out + census->dark + census->saturated + census->non_finite +
-                         census->shaded,
+    const ofc_pixel_counts *pixel_counts = &out.solution.pixel_counts;
+    assert_int_equal(pixel_counts->usable + pixel_counts->masked_out + pixel_counts->dark + pixel_counts->saturated + pixel_counts->non_finite +
+                         pixel_counts->shaded,
                      PIXELS);
     /* A mask is a wish, and the answer does not depend on it. */
     static ofc_solution again;
@@ -195,14 +195,14 @@ static void answers(void **state)
     assert_memory_equal(&again, &out.solution, sizeof again);
 }
 
-static void roads(void **state)
+static void methods(void **state)
 {
     (void)state;
     /* The default: F as a whole, with how sure it is. */
     const ofc_image image = ball_image();
     ofc_solve_params params;
     assert_int_equal(ofc_solve_params_default(&params), OFC_STATUS_OK);
-    assert_int_equal(params.road, OFC_ROAD_JOINT);
+    assert_int_equal(params.orientation_method, OFC_ORIENTATION_JOINT);
     static ofc_solution joint;
     assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &joint), OFC_STATUS_OK);
     assert_int_equal(joint.slant_source, OFC_SLANTS_JOINT);
@@ -210,17 +210,17 @@ static void roads(void **state)
     const ofc_confidence *confidence = &joint.confidence;
     assert_true(confidence->evidence >= OFC_EVIDENCE_OUTWARD && confidence->evidence <= OFC_EVIDENCE_BOTH);
     assert_true(confidence->error_rad > 0 && confidence->error_rad < 0.2);
-    assert_true(confidence->dome > 0.9 && confidence->dome <= 1 && confidence->second_best > 0);
-    for (int c = 0; c < 3; c++) /* the ball suits the paper's road too */
+    assert_true(confidence->convexity > 0.9 && confidence->convexity <= 1 && confidence->second_best > 0);
+    for (int c = 0; c < 3; c++) /* the ball suits the direct method too */
         assert_true(fabs(joint.slant_rad[c] - stages.solution.slant_rad[c]) < 0.2);
-    /* The paper's road claims no certainty; given tilts take it. */
+    /* The direct method claims no certainty; given tilts take it. */
     assert_int_equal(stages.solution.slant_source, OFC_SLANTS_ROOT);
     assert_true(stages.solution.confidence.evidence == OFC_EVIDENCE_TILTS_ALONE);
     assert_true(stages.solution.confidence.error_rad == 0);
     /* The border of the ball is in the shadow of one light or another: left out, unless it is to be kept. */
-    assert_true(joint.census.shaded > 0 && joint.inliers.shadow_faces[0].least > 0);
-    assert_true(stages.solution.census.shaded == 0 && stages.solution.inliers.shadow_faces[0].least == 0);
-    assert_int_equal(joint.census.usable + joint.census.shaded, stages.solution.census.usable);
+    assert_true(joint.pixel_counts.shaded > 0 && joint.inliers.shadow_faces[0].least > 0);
+    assert_true(stages.solution.pixel_counts.shaded == 0 && stages.solution.inliers.shadow_faces[0].least == 0);
+    assert_int_equal(joint.pixel_counts.usable + joint.pixel_counts.shaded, stages.solution.pixel_counts.usable);
     params.keep_shadows = 1;
     params.tilt_estimator = OFC_TILT_GIVEN;
     memcpy(params.tilt_rad, stages.solution.tilts.tilt_rad, sizeof params.tilt_rad);
@@ -359,7 +359,7 @@ int main(void)
         cmocka_unit_test(answers),         cmocka_unit_test(pictures_without_an_answer),
         cmocka_unit_test(exact_workspace), cmocka_unit_test(sizes),
         cmocka_unit_test(defaults),        cmocka_unit_test(messages_and_version),
-        cmocka_unit_test(threads_at_once), cmocka_unit_test(roads),
+        cmocka_unit_test(threads_at_once), cmocka_unit_test(methods),
     };
     return cmocka_run_group_tests(tests, prepare_stages, NULL);
 }

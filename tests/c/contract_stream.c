@@ -32,13 +32,13 @@ static ofc_image row_of(uint8_t picture[HEIGHT][WIDTH][3], int y)
 }
 
 /* Room for every pixel: the answers are those of ofc_solve. */
-static int fresh_on(ofc_road road)
+static int fresh_on(ofc_orientation_method orientation_method)
 {
     if (ofc_stream_params_default(&params) != OFC_STATUS_OK)
         return -1;
     params.solve.lmeds.sample_size = 10000;
-    params.solve.road = road;
-    params.solve.keep_shadows = road == OFC_ROAD_PAPER;
+    params.solve.orientation_method = orientation_method;
+    params.solve.keep_shadows = orientation_method == OFC_ORIENTATION_DIRECT;
     memset(memory, 0xa5, sizeof memory);
     return ofc_stream_init(WIDTH, HEIGHT, OFC_PIXEL_RGB8, &params, memory, sizeof memory, &stream);
 }
@@ -46,13 +46,13 @@ static int fresh_on(ofc_road road)
 static int fresh(void **state)
 {
     (void)state;
-    return fresh_on(OFC_ROAD_PAPER);
+    return fresh_on(OFC_ORIENTATION_DIRECT);
 }
 
 static int fresh_joint(void **state)
 {
     (void)state;
-    return fresh_on(OFC_ROAD_JOINT);
+    return fresh_on(OFC_ORIENTATION_JOINT);
 }
 
 static ofc_status frame_of(ofc_stream *s, uint8_t picture[HEIGHT][WIDTH][3], ofc_stream_pass *next)
@@ -214,7 +214,7 @@ static void frames_without_an_answer(void **state)
     assert_int_equal(frame_of(stream, pixels, &out.pass), OFC_STATUS_RANK_DEFICIENT);
     assert_int_equal(out.pass, OFC_PASS_COLORS);
     assert_int_equal(ofc_stream_solution(stream, &out.solution), OFC_STATUS_RANK_DEFICIENT);
-    assert_int_equal(out.solution.census.usable, PIXELS);
+    assert_int_equal(out.solution.pixel_counts.usable, PIXELS);
     solve_cold(stream);
 }
 
@@ -374,7 +374,7 @@ static void bad_streams(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, smallest_share, 1.1);
     BAD(OFC_STATUS_INVALID_PARAMETER, smallest_share, NAN);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.lmeds.sample_size, 23);
-    BAD(OFC_STATUS_INVALID_PARAMETER, solve.road, 2);
+    BAD(OFC_STATUS_INVALID_PARAMETER, solve.orientation_method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.keep_shadows, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.tilt_estimator, OFC_TILT_CHOJNACKI);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.slant_fallback, OFC_FALLBACK_TILT_INTEGRABILITY);
@@ -418,7 +418,7 @@ static void sizes_and_defaults(void **state)
             other.solve.lmeds.sample_size = samples[k];
             assert_int_equal(ofc_stream_size(width, height, &other), OFC_STREAM_SIZE_FOR(width, height, samples[k]));
             assert_int_equal(ofc_stream_size(width, height, &other) % 8, 0);
-            other.solve.road = OFC_ROAD_PAPER;
+            other.solve.orientation_method = OFC_ORIENTATION_DIRECT;
             const size_t less = ofc_stream_size(width, height, &other);
             assert_true(less > 0 && less <= OFC_STREAM_SIZE_FOR(width, height, samples[k]));
         }
@@ -453,7 +453,7 @@ static void exact_memory(void **state)
     }
 }
 
-/* Of the call that ends a pass, on the other road. */
+/* Of the call that ends a pass, with the joint method. */
 enum { JOINT_STACK = 20480 };
 
 /* What a call needs of the stack: one thread a call, on a stack whose pattern it wears away. */
@@ -537,7 +537,7 @@ static void stack_use(void **state)
     for (int call = 0; call < CALLS; call++) {
         print_message("%s: %zu bytes of stack\n", names[call], most[call] - most[NOTHING]);
 #ifndef __SANITIZE_ADDRESS__
-        const size_t limit = params.solve.road == OFC_ROAD_JOINT && call == END ? JOINT_STACK : 4096;
+        const size_t limit = params.solve.orientation_method == OFC_ORIENTATION_JOINT && call == END ? JOINT_STACK : 4096;
         assert_true(most[call] - most[NOTHING] <= limit);
 #endif
     }

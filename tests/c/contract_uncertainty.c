@@ -8,7 +8,7 @@ static struct {
     float angles[HEIGHT * PADDED + 8];
 } out;
 
-/* The default road knows how sure it is. */
+/* The default method knows how sure it is. */
 static ofc_solution solution;
 
 static int prepare(void **state)
@@ -16,7 +16,7 @@ static int prepare(void **state)
     const int failed = prepare_stages(state);
     const ofc_image image = ball_image();
     ofc_solve_params params = stages.params;
-    params.road = OFC_ROAD_JOINT;
+    params.orientation_method = OFC_ORIENTATION_JOINT;
     params.tilt_estimator = OFC_TILT_PENTLAND;
     return failed || ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &solution) != OFC_STATUS_OK ||
            solution.confidence.evidence == OFC_EVIDENCE_TILTS_ALONE;

@@ -19,7 +19,7 @@ void mix_bytes(const uint8_t *values, int count);
 void mix_shorts(const uint16_t *values, int count);
 void mix_words(const uint32_t *values, int count);
 
-void mix_census(const ofc_census *census);
+void mix_pixel_counts(const ofc_pixel_counts *pixel_counts);
 void mix_color_fit(const ofc_color_fit *fit);
 void mix_rank(const ofc_rank *rank);
 void mix_covariance(const ofc_covariance *covariance);

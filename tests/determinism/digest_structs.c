@@ -7,15 +7,15 @@
 #define INTEGER(field) mix_status((int32_t)(field))
 #define INTEGERS(field) mix_words((const uint32_t *)(field), (int)(sizeof(field) / sizeof(uint32_t)))
 
-void mix_census(const ofc_census *census)
+void mix_pixel_counts(const ofc_pixel_counts *pixel_counts)
 {
-    INTEGER(census->usable);
-    INTEGER(census->masked_out);
-    INTEGER(census->dark);
-    INTEGER(census->saturated);
-    INTEGER(census->non_finite);
-    INTEGER(census->shaded);
-    mix_floats(&census->largest, 1);
+    INTEGER(pixel_counts->usable);
+    INTEGER(pixel_counts->masked_out);
+    INTEGER(pixel_counts->dark);
+    INTEGER(pixel_counts->saturated);
+    INTEGER(pixel_counts->non_finite);
+    INTEGER(pixel_counts->shaded);
+    mix_floats(&pixel_counts->largest, 1);
 }
 
 void mix_color_fit(const ofc_color_fit *fit)
@@ -136,7 +136,7 @@ void mix_solution(const ofc_solution *solution)
     INTEGER(solution->chosen);
     INTEGER(solution->inlier_count);
     INTEGER(solution->reserved);
-    mix_census(&solution->census);
+    mix_pixel_counts(&solution->pixel_counts);
     mix_color_fit(&solution->fit);
     mix_rank(&solution->rank);
     mix_location(&solution->norm_location);
@@ -146,7 +146,7 @@ void mix_solution(const ofc_solution *solution)
     ARRAY(solution->slant_rad);
     ARRAY(solution->confidence.covariance);
     NUMBER(solution->confidence.error_rad);
-    NUMBER(solution->confidence.dome);
+    NUMBER(solution->confidence.convexity);
     NUMBER(solution->confidence.second_best);
     INTEGER(solution->confidence.evidence);
     INTEGER(solution->confidence.reserved);
@@ -250,7 +250,7 @@ void mix_solve_params(const ofc_solve_params *params)
     ARRAY(params->tilt_rad);
     INTEGER(params->tilt_estimator);
     INTEGER(params->slant_fallback);
-    INTEGER(params->road);
+    INTEGER(params->orientation_method);
     INTEGERS(params->reserved);
 }
 

@@ -39,8 +39,8 @@ int main(void)
         print(scenes[i].name, "fit");
         mix_lights(&image, &fitted);
         print(scenes[i].name, "lights");
-        mix_roads(&image, &fitted);
-        print(scenes[i].name, "roads");
+        mix_methods(&image, &fitted);
+        print(scenes[i].name, "orientation methods");
         mix_segments(&image, &fitted);
         print(scenes[i].name, "segments and ranks");
         mix_solve(&image, i);

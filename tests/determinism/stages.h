@@ -20,7 +20,7 @@ struct fitted {
 };
 void mix_fit(const ofc_image *image, struct fitted *fitted);
 void mix_lights(const ofc_image *image, struct fitted *fitted);
-void mix_roads(const ofc_image *image, const struct fitted *fitted);
+void mix_methods(const ofc_image *image, const struct fitted *fitted);
 /* `variant`: any number; it chooses among estimators and fallbacks. */
 void mix_solve(const ofc_image *image, int variant);
 /* Of the normals; the surface that it returns lasts until the next call. */

@@ -1,8 +1,8 @@
-/* From a picture to F by every road, and what follows from F. */
+/* From a picture to F by every method, and what follows from F. */
 #include "digest.h"
 #include "stages.h"
 
-void mix_roads(const ofc_image *image, const struct fitted *fitted)
+void mix_methods(const ofc_image *image, const struct fitted *fitted)
 {
     const ofc_inliers *inliers = &fitted->inliers;
     const double *root = fitted->ellipsoid.root, *tilts = fitted->tilts.tilt_rad;
@@ -67,7 +67,7 @@ void mix_solve(const ofc_image *image, int variant)
     params.lmeds.sample_size = 400;
     params.lmeds.seed = 9;
     solve(image, &params);
-    params.road = OFC_ROAD_PAPER;
+    params.orientation_method = OFC_ORIENTATION_DIRECT;
     params.tilt_estimator = OFC_TILT_PENTLAND;
     solve(image, &params);
     params.tilt_estimator = OFC_TILT_LEE_ROSENFELD + variant % 3;

@@ -1,4 +1,4 @@
-/* The same picture as rows, on both roads: a cold start and frames that refine it. */
+/* The same picture as rows, by both methods: a cold start and frames that refine it. */
 #include "digest.h"
 #include "stages.h"
 
@@ -16,7 +16,7 @@ static ofc_image row_of(const ofc_image *image, int y)
     return row;
 }
 
-static void mix_road(const ofc_image *image, ofc_road road)
+static void mix_method(const ofc_image *image, ofc_orientation_method orientation_method)
 {
     static uint64_t memory[OFC_STREAM_SIZE_FOR(WIDTH, HEIGHT, 300) / sizeof(uint64_t) + 1];
     ofc_stream_params params;
@@ -24,8 +24,8 @@ static void mix_road(const ofc_image *image, ofc_road road)
     mix_status(ofc_stream_params_default(&params));
     params.solve.lmeds.sample_size = 300;
     params.solve.lmeds.subsets = 20;
-    params.solve.road = road;
-    params.solve.keep_shadows = road == OFC_ROAD_PAPER;
+    params.solve.orientation_method = orientation_method;
+    params.solve.keep_shadows = orientation_method == OFC_ORIENTATION_DIRECT;
     mix_status(ofc_stream_init(image->width, image->height, image->format, &params, memory, sizeof memory, &stream));
     for (int frame = 0; stream != NULL && frame < 5; frame++) {
         ofc_stream_pass pass = 0;
@@ -62,6 +62,6 @@ static void mix_road(const ofc_image *image, ofc_road road)
 
 void mix_stream(const ofc_image *image)
 {
-    mix_road(image, OFC_ROAD_PAPER);
-    mix_road(image, OFC_ROAD_JOINT);
+    mix_method(image, OFC_ORIENTATION_DIRECT);
+    mix_method(image, OFC_ORIENTATION_JOINT);
 }

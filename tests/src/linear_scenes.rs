@@ -1,8 +1,8 @@
 //! Rendered pictures with known normals that obey the model: rho = F n in f64, in any of the layouts that the core reads.
 
 use crate::linear::{Matrix, apply, unit};
-use ofc_core::image::{Image, Order, Sample};
-use ofc_core::rng::Rng;
+use ofc_core::math::rng::Rng;
+use ofc_core::picture::{Image, Order, Sample};
 
 /// Table 1's color strengths: rows are channels, columns lights. The paper prints the last entry as 50, with which
 /// none of its "Correct" rows come out (see DESIGN.md).

@@ -3,9 +3,9 @@
 use crate::depth_maps::{
     Relief, TABLE_1_COLORS, bump, bust, direction, egg, peaks, sphere, table_1_directions, terrain, vase,
 };
-use ofc_core::image::{Order, Sample};
+use ofc_core::math::rng::Rng;
+use ofc_core::picture::{Order, Sample};
 use ofc_core::render::{self, Canvas, Lights, Outputs, Rows, render};
-use ofc_core::rng::Rng;
 
 /// Their names, whether they are convex on the whole, and they.
 pub fn reliefs() -> [(&'static str, bool, Relief); 7] {

@@ -1,7 +1,7 @@
 //! Least median of squares by exhaustion and by random restarts, all in f64, and the statistics after it.
 
 use crate::linear::{eliminate, least_squares, median};
-use ofc_core::rng::Rng;
+use ofc_core::math::rng::Rng;
 
 /// The row of M for a color, the terms of eq. 10 in its order.
 #[must_use]

@@ -1,6 +1,6 @@
 //! The real photographs with ground truth beside the project, where they are present.
 
-use ofc_core::image::{Image, Order, Sample};
+use ofc_core::picture::{Image, Order, Sample};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Small pictures rendered from a depth function under any number of lights, with the shadows on what is turned away from
 //! them. Shares no code with the core.
 
-use ofc_core::image::{Image, Order, Sample};
+use ofc_core::picture::{Image, Order, Sample};
 
 /// A 3x3 matrix, row-major.
 pub type Matrix = [[f64; 3]; 3];

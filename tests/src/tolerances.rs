@@ -27,7 +27,7 @@ pub const STUDENT_QUANTILE: f64 = 1e-6;
 /// The best objective that any search has found may be smaller than the core's by this share: local minima lie so
 /// close together where noise is all that tells them apart.
 pub const OBJECTIVE: f64 = 0.05;
-/// The same on pictures of a dozen pixels where every subset is tried: the search judges in f32.
+/// The same on pictures of a dozen pixels where every subset is tried: the search evaluates in f32.
 pub const EXHAUSTIVE_OBJECTIVE: f64 = 1e-4;
 
 /// F and the normals of noise-free f32 pictures with true tilts: the bound. Rounding to f32 is noise of 6e-8,

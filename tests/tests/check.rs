@@ -1,18 +1,18 @@
 //! The self-checks against a naive oracle, on an egg, with something wrong, and on the photographs.
 
 use ofc_core::check::{Check, CheckError, DepthCheck, check, workspace_len};
-use ofc_core::depth::{self, DepthInput, DepthParams, Plane, Slopes};
-use ofc_core::image::{Image, Window, for_each_bit};
-use ofc_core::mat3;
-use ofc_core::normals::{self, Length};
-use ofc_core::orientation::Orientation;
+use ofc_core::math::mat3;
+use ofc_core::orientation::matrix::Orientation;
+use ofc_core::picture::{Image, Window, for_each_bit};
 use ofc_core::render::DepthMap;
-use ofc_core::solve::{self, Outcome, Road, Solution};
+use ofc_core::solve::{self, OrientationMethod, Outcome, Solution};
+use ofc_core::surface::depth::{self, DepthInput, DepthParams, Plane, Slopes};
+use ofc_core::surface::normals::{self, Length};
 use ofc_tests::photographs;
 use ofc_tests::shaded_scenes::{CLEAN, Matrix, PAPER, Scene, dot};
 
 fn solved(image: &Image) -> Solution {
-    let params = solve::Params { road: Road::Paper, ..solve::Params::default() };
+    let params = solve::Params { orientation_method: OrientationMethod::Direct, ..solve::Params::default() };
     let pixels = image.width() * image.height();
     let mut workspace = vec![0.0; solve::workspace_len(pixels, params.lmeds.sample_size)];
     let solution = solve::solve(image, &params, &mut workspace).expect("a solution");
@@ -195,7 +195,8 @@ fn bad_input_is_refused() {
     let coefficients = solution.fit.unwrap().coefficients;
     let need = workspace_len(160 * 160);
     let run = |orientation: &Orientation, len: usize, any: bool| {
-        let inliers = |window: &ofc_core::image::Window| if any { solution.inliers.bits(window) } else { 0 };
+        let inliers =
+            |window: &ofc_core::picture::Window| if any { solution.inliers.bits(window) } else { 0 };
         check(&image, inliers, orientation, &coefficients, None, &mut vec![0.0; len]).map(|_| ())
     };
     let bytes = vec![0; 4 * 160 * 161];

@@ -1,7 +1,7 @@
 //! The core's solutions of eqs. 24 against elimination to a quartic, on thousands of random configurations.
 
-use ofc_core::constrained_slant::{Candidates, roots};
-use ofc_core::rng::Rng;
+use ofc_core::light::constrained_slant::{Candidates, roots};
+use ofc_core::math::rng::Rng;
 use ofc_tests::slant_oracle::{self, determinant, distance, jacobian, residuals};
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -1,10 +1,10 @@
 //! Depth from normals against an independent solution, and everything that its documentation promises.
 
-use ofc_core::depth::{
+use ofc_core::math::rng::Rng;
+use ofc_core::surface::depth::{
     DepthError, DepthInput, DepthParams, DepthResult, MAX_PIXELS, Method, Plane, Slopes, integrate,
     workspace_len,
 };
-use ofc_core::rng::Rng;
 use ofc_tests::depth_oracle::{self as oracle, Field};
 
 /// RMSE against the truth may be this much larger than that of the exact least-squares solution (from the issue).

@@ -1,10 +1,10 @@
 //! Whole rectangles, which are solved directly: against an independent solution, against multigrid, and what the
 //! documentation promises about them.
 
-use ofc_core::depth::{
+use ofc_core::math::rng::Rng;
+use ofc_core::surface::depth::{
     DepthInput, DepthParams, DepthResult, Method, Plane, Slopes, integrate, workspace_len,
 };
-use ofc_core::rng::Rng;
 use ofc_tests::depth_oracle::{self as oracle, Field};
 
 /// Distance from the oracle as a part of the depth's RMS: rounding, which long thin rectangles let grow most.

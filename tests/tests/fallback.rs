@@ -1,11 +1,11 @@
 //! What solve does where eqs. 25 have no root: each fallback, on pictures whose border spoils Pentland's tilts.
 
-use ofc_core::solve::{self, Outcome, Params, Road, SlantFallback, SlantSource, Solution};
+use ofc_core::solve::{self, OrientationMethod, Outcome, Params, SlantFallback, SlantSource, Solution};
 use ofc_tests::shaded_scenes::{CLEAN, Scene, median_error};
 use std::f64::consts::FRAC_PI_2;
 
 fn solve(scene: &Scene, fallback: SlantFallback) -> Solution {
-    let params = Params { fallback, road: Road::Paper, ..Params::default() };
+    let params = Params { fallback, orientation_method: OrientationMethod::Direct, ..Params::default() };
     let len = solve::workspace_len(scene.width * scene.height, params.lmeds.sample_size);
     solve::solve(&scene.image(), &params, &mut vec![f32::NAN; len]).expect("a solution")
 }

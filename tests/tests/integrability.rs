@@ -1,7 +1,7 @@
 //! The integral (15) against explicit loops, and on surfaces where it is zero.
 
-use ofc_core::integrability::integral;
-use ofc_core::rng::Rng;
+use ofc_core::math::rng::Rng;
+use ofc_core::orientation::integrability::integral;
 use ofc_tests::linear::{Matrix, apply, inverse, multiply, transpose};
 use ofc_tests::linear_scenes::{Scene, paraboloid, three_lights};
 use ofc_tests::tolerances::{INTEGRABLE, REORDERED_SUM};

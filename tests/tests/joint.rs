@@ -1,12 +1,12 @@
 //! The default orientation: on rendered scenes against the best that any orthogonal transformation could do, and on the
 //! photographs. The tables say more than the bounds below them, which are what is measured with some room.
 
-use ofc_core::image::{Image, Order, Sample, Usable};
-use ofc_core::inliers::Inliers;
-use ofc_core::joint::{self, Evidence};
-use ofc_core::lmeds;
-use ofc_core::normals::{Length, normal};
-use ofc_core::solve::{Outcome, Params, Road, SlantSource, Solution, solve, workspace_len};
+use ofc_core::color::inliers::Inliers;
+use ofc_core::color::lmeds;
+use ofc_core::orientation::joint::{self, Evidence};
+use ofc_core::picture::{Image, Order, Sample, Usable};
+use ofc_core::solve::{OrientationMethod, Outcome, Params, SlantSource, Solution, solve, workspace_len};
+use ofc_core::surface::normals::{Length, normal};
 use ofc_tests::depth_maps::{egg, sphere};
 use ofc_tests::linear::{Matrix, apply, degrees_between, dot, median, nearest_orthogonal, unit};
 use ofc_tests::lit_reliefs::{lights, reliefs, rendered};
@@ -90,14 +90,17 @@ fn rendered_scenes() {
                     .expect("a picture");
                 let solution = solved(&image, &Params::default());
                 assert_eq!(solution.outcome, Outcome::Solved, "{name} {number} {noise}");
-                let joint = solution.joint.expect("the default road");
+                let joint = solution.joint.expect("the joint method");
                 let Errors { ours, oracle, right_twin } = errors(&image, &solution, &truth);
-                let paper = solved(&image, &Params { road: Road::Paper, ..Params::default() });
+                let paper = solved(
+                    &image,
+                    &Params { orientation_method: OrientationMethod::Direct, ..Params::default() },
+                );
                 let paper = paper.choice.as_ref().map_or(90.0, |_| errors(&image, &paper, &truth).ours);
                 let expected = joint.expected_error().to_degrees();
                 println!(
                     "{name:<8} {number:>6} {noise:>5} {ours:6.2}  {oracle:6.2} {paper:6.2}  {expected:8.2}  {:4.2}  {:?}",
-                    joint.dome, joint.evidence
+                    joint.convexity, joint.evidence
                 );
                 all += 1;
                 near += usize::from(ours <= 1.25 * oracle);
@@ -111,7 +114,7 @@ fn rendered_scenes() {
     }
     let percent = |count: usize, of: usize| 100.0 * count as f64 / of as f64;
     println!(
-        "of {all}: {:.0} % within 1.25 times the oracle ({:.0} % on the paper's road), {:.0} % within 2; above that {:.0} % \
+        "of {all}: {:.0} % within 1.25 times the oracle ({:.0} % with the direct method), {:.0} % within 2; above that {:.0} % \
          are told or not there; the right twin on {:.0} % of convex ones",
         percent(near, all),
         percent(paper_near, all),
@@ -139,7 +142,7 @@ fn photographs() {
             let image = photograph.image();
             let solution = solved(&image, &Params { lmeds, ..Params::default() });
             assert_eq!(solution.choice.as_ref().map(|choice| choice.source), Some(SlantSource::Joint));
-            let joint = solution.joint.expect("the default road");
+            let joint = solution.joint.expect("the joint method");
             let Errors { ours, oracle, .. } = errors(&image, &solution, &photograph.normals);
             let expected = joint.expected_error().to_degrees();
             println!(
@@ -202,7 +205,7 @@ fn presses_with_their_background() {
 }
 
 #[test]
-fn too_little_is_no_answer_and_the_paper_s_road_is_taken() {
+fn too_little_is_no_answer_and_the_direct_method_is_taken() {
     let scene = sphere(24, 24, 0.9, 70.0);
     let (a, b) = lights(1);
     let (pixels, _) = rendered(&scene, &a, &b, 0.0, 1);
@@ -234,6 +237,6 @@ fn the_same_whatever_the_workspace_held() {
     let len = workspace_len(160 * 120, params.lmeds.sample_size);
     let [first, second] =
         [0.0, f32::NAN].map(|fill| solve(&image, &params, &mut vec![fill; len]).expect("a solution").joint);
-    assert!(first.is_some_and(|joint| joint.evidence != Evidence::Outward || joint.dome > 0.0));
+    assert!(first.is_some_and(|joint| joint.evidence != Evidence::Outward || joint.convexity > 0.0));
     assert_eq!(first, second);
 }

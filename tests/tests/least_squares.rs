@@ -1,8 +1,8 @@
 //! Least squares in place of least median of squares.
 
-use ofc_core::ellipsoid::quadratic_form;
-use ofc_core::image::Usable;
-use ofc_core::lmeds::{self, FitError, Method, Params};
+use ofc_core::color::ellipsoid::quadratic_form;
+use ofc_core::color::lmeds::{self, FitError, Method, Params};
+use ofc_core::picture::Usable;
 use ofc_core::solve;
 use ofc_tests::photographs;
 use ofc_tests::shaded_scenes::{CLEAN, Scene, dot, lopsided};
@@ -103,7 +103,7 @@ fn photometric_stereo_with_unknown_lights() {
         let choice = solution.choice.as_ref().expect("an F");
         let mut errors = Vec::new();
         image.for_each_window(|window| {
-            ofc_core::image::for_each_bit(solution.inliers.bits(window), |i| {
+            ofc_core::picture::for_each_bit(solution.inliers.bits(window), |i| {
                 let n = choice.orientation.f_inverse.map(|row| dot(row, window.pixel(i).map(f64::from)));
                 let truth = photo.normals[window.y * photo.width + window.x + i].map(f64::from);
                 errors.push((dot(n, truth) / dot(n, n).sqrt()).clamp(-1.0, 1.0).acos().to_degrees());

@@ -1,12 +1,12 @@
 //! The estimators of light direction against what they expect of a Lambertian sphere, and against naive sums elsewhere.
 #![allow(clippy::cast_sign_loss, clippy::cast_possible_wrap, reason = "small pixel numbers")]
 
-use ofc_core::channel_maxima;
-use ofc_core::image::{Image, Sample, Window};
-use ofc_core::rng::Rng;
-use ofc_core::slant::{self, Estimate, Reach};
-use ofc_core::tilt::chojnacki::{Disc, largest_disc, workspace_len};
-use ofc_core::tilt::{chojnacki, lee_rosenfeld, pentland, zheng_chellappa};
+use ofc_core::light::channel_maxima;
+use ofc_core::light::slant::{self, Estimate, Reach};
+use ofc_core::light::tilt::chojnacki::{Disc, largest_disc, workspace_len};
+use ofc_core::light::tilt::{chojnacki, lee_rosenfeld, pentland, zheng_chellappa};
+use ofc_core::math::rng::Rng;
+use ofc_core::picture::{Image, Sample, Window};
 use ofc_tests::depth_maps::direction;
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -1,9 +1,9 @@
 //! Least median of squares and the fit after it against exhaustion, random restarts and textbook formulas.
 
-use ofc_core::image::{Image, Order, Sample, Usable};
-use ofc_core::lmeds::{Fit, FitError, MAX_SUBSETS, Params, fit, subset_count, workspace_len};
-use ofc_core::rng::Rng;
-use ofc_core::student_t;
+use ofc_core::color::lmeds::{Fit, FitError, MAX_SUBSETS, Params, fit, subset_count, workspace_len};
+use ofc_core::math::rng::Rng;
+use ofc_core::math::student_t;
+use ofc_core::picture::{Image, Order, Sample, Usable};
 use ofc_tests::linear::{inverse, least_squares, length, multiply, transpose};
 use ofc_tests::linear_scenes::{Scene, ellipsoid, normal, sphere, table_1_f, three_lights};
 use ofc_tests::lmeds_oracle::{self as oracle, row};
@@ -337,7 +337,7 @@ fn the_pixels_left_out_are_counted() {
     let image = Image::interleaved(&bytes, 70, 30, 70 * 12, Sample::F32, Order::Rgb)
         .and_then(|image| image.with_mask(&mask, 70))
         .expect("sizes agree");
-    let census = Usable::below(200.0).count(&image);
+    let pixel_counts = Usable::below(200.0).count(&image);
     let (mut masked_out, mut non_finite, mut dark, mut saturated, mut usable) = (0, 0, 0, 0, 0);
     for (value, &mask) in values.iter().zip(&mask) {
         if mask == 0 {
@@ -353,7 +353,13 @@ fn the_pixels_left_out_are_counted() {
         }
     }
     assert_eq!(
-        (census.masked_out, census.non_finite, census.dark, census.saturated, census.usable),
+        (
+            pixel_counts.masked_out,
+            pixel_counts.non_finite,
+            pixel_counts.dark,
+            pixel_counts.saturated,
+            pixel_counts.usable
+        ),
         (masked_out, non_finite, dark, saturated, usable)
     );
     assert!(masked_out > 0 && non_finite > 0 && dark > 0 && saturated > 0 && usable > 0);

@@ -1,7 +1,7 @@
 //! The one-dimensional least median of squares against brute force.
 
-use ofc_core::location::shortest_half;
-use ofc_core::rng::Rng;
+use ofc_core::color::location::shortest_half;
+use ofc_core::math::rng::Rng;
 use ofc_tests::linear::median;
 use ofc_tests::tolerances::REORDERED_SUM;
 

@@ -1,8 +1,8 @@
 //! Normals against F^-1 rho, one pixel at a time.
 
-use ofc_core::normals::{Length, TooShort, compute};
-use ofc_core::orientation::{Orientation, RANK_THRESHOLD};
-use ofc_core::rng::Rng;
+use ofc_core::math::rng::Rng;
+use ofc_core::orientation::matrix::{Orientation, RANK_THRESHOLD};
+use ofc_core::surface::normals::{Length, TooShort, compute};
 use ofc_tests::linear::{apply, inverse, unit};
 use ofc_tests::linear_scenes::{Scene, three_lights};
 use ofc_tests::tolerances::STORED_AS_F32;

@@ -1,13 +1,13 @@
-//! The roads to the orthogonal transformation: the same minimum, the twin, the choice between them.
+//! The methods to the orthogonal transformation: the same minimum, the twin, the choice between them.
 
-use ofc_core::ellipsoid;
-use ofc_core::image::{Usable, Window, for_each_bit};
-use ofc_core::integrability;
-use ofc_core::lmeds;
-use ofc_core::mat3::{Mat3, dot};
-use ofc_core::orthogonal::annealing::{self, Params, annealing};
-use ofc_core::orthogonal::closed_form::closed_form;
-use ofc_core::orthogonal::{Found, OrthogonalError, TwinChoice};
+use ofc_core::color::ellipsoid;
+use ofc_core::color::lmeds;
+use ofc_core::math::mat3::{Mat3, dot};
+use ofc_core::orientation::integrability;
+use ofc_core::orientation::orthogonal::annealing::{self, Params, annealing};
+use ofc_core::orientation::orthogonal::closed_form::closed_form;
+use ofc_core::orientation::orthogonal::{Found, OrthogonalError, TwinChoice};
+use ofc_core::picture::{Usable, Window, for_each_bit};
 use ofc_core::solve;
 use ofc_tests::photographs;
 use ofc_tests::shaded_scenes::{CLEAN, Light, Matrix, PAPER, Scene, cap, lopsided, median_error};
@@ -89,14 +89,14 @@ fn assert_orthogonal(rows: &Mat3) {
 }
 
 #[test]
-fn all_roads_lead_to_the_same_integral_without_noise() {
+fn all_methods_lead_to_the_same_integral_without_noise() {
     for (name, scene) in scenes() {
         let root = fitted_root(&scene);
         let annealed = anneal(&scene, &root, None, &Params::default());
         let closed = closed_form(&scene.image(), inliers(&scene), &root, None, 60).unwrap();
-        for (road, found) in [("annealing", &annealed), ("closed form", &closed)] {
+        for (orientation_method, found) in [("annealing", &annealed), ("closed form", &closed)] {
             println!(
-                "{name}, {road}: integral {:.4e} (unpolished {:.4e}), median error {:.3} deg, clarity {:.2}, {} evaluations",
+                "{name}, {orientation_method}: integral {:.4e} (unpolished {:.4e}), median error {:.3} deg, clarity {:.2}, {} evaluations",
                 found.integral.mean,
                 found.unpolished.mean,
                 median_error(&scene, &found.transformation.f_inverse),
@@ -110,10 +110,13 @@ fn all_roads_lead_to_the_same_integral_without_noise() {
             assert!((integral(&scene, &found.twin.f_inverse) - naive).abs() < 1e-9 * naive);
             // One minimum: a discretisation error wide, so 1 % of it is far below a hundredth of a degree.
             let difference = (found.integral.mean - annealed.integral.mean).abs();
-            assert!(difference < 0.01 * annealed.integral.mean + ROUNDING, "{name}, {road}");
+            assert!(difference < 0.01 * annealed.integral.mean + ROUNDING, "{name}, {orientation_method}");
             // These are domes, so the convex twin is the truth.
             assert_eq!(found.choice, TwinChoice::Convex);
-            assert!(median_error(&scene, &found.transformation.f_inverse) < 0.5, "{name}, {road}");
+            assert!(
+                median_error(&scene, &found.transformation.f_inverse) < 0.5,
+                "{name}, {orientation_method}"
+            );
             assert!(median_error(&scene, &found.twin.f_inverse) > 10.0);
             assert!(found.transformation.slants.iter().all(|&slant| slant <= PI / 2.0));
         }
@@ -126,8 +129,8 @@ fn tilts_choose_between_the_twins() {
     let root = fitted_root(&scene);
     let tilts = scene.f.map(|[x, y, _]| y.atan2(x));
     let away = tilts.map(|tilt| tilt + PI);
-    for road in 0..2 {
-        let find = |tilts| match road {
+    for orientation_method in 0..2 {
+        let find = |tilts| match orientation_method {
             0 => anneal(&scene, &root, Some(tilts), &Params::default()),
             _ => closed_form(&scene.image(), inliers(&scene), &root, Some(tilts), 60).unwrap(),
         };
@@ -166,9 +169,9 @@ fn noise_moves_the_answer_a_little() {
         let root = fitted_root(&scene);
         let annealed = anneal(&scene, &root, None, &Params::default());
         let closed = closed_form(&scene.image(), inliers(&scene), &root, None, 60).unwrap();
-        for (road, found) in [("annealing", &annealed), ("closed form", &closed)] {
+        for (orientation_method, found) in [("annealing", &annealed), ("closed form", &closed)] {
             println!(
-                "noise, {road}: integral {:.4e} (unpolished {:.4e}), median error {:.3} deg",
+                "noise, {orientation_method}: integral {:.4e} (unpolished {:.4e}), median error {:.3} deg",
                 found.integral.mean,
                 found.unpolished.mean,
                 median_error(&scene, &found.transformation.f_inverse)
@@ -178,9 +181,9 @@ fn noise_moves_the_answer_a_little() {
     }
 }
 
-/// The roads need no tilts; with Pentland's to choose between the twins they are measured against the direct method.
+/// The methods need no tilts; with Pentland's to choose between the twins they are measured against the direct method.
 #[test]
-fn photographs_by_every_road() {
+fn photographs_by_every_method() {
     for name in ["gelsight_ball_6mm", "gelsight_ball_9mm", "gelsight_ball_4mm", "cat_figurine"] {
         let Some(photo) = photographs::load(name) else { return };
         let image = photo.image();
@@ -212,9 +215,11 @@ fn photographs_by_every_road() {
             annealing(&image, bits, &root, tilts, &annealing_params, &mut cells).expect("a minimum");
         let bare = closed_form(&image, bits, &root, tilts, 0).expect("a minimum");
         let closed = closed_form(&image, bits, &root, tilts, 60).expect("a minimum");
-        for (road, found) in [("annealing", annealed), ("closed form, bare", bare), ("closed form", closed)] {
+        for (orientation_method, found) in
+            [("annealing", annealed), ("closed form, bare", bare), ("closed form", closed)]
+        {
             println!(
-                "  {road}: {:.2} deg, integral {:.3e}, clarity {:.2}, twin {:.2} deg",
+                "  {orientation_method}: {:.2} deg, integral {:.3e}, clarity {:.2}, twin {:.2} deg",
                 error(&found.transformation.f_inverse),
                 found.integral.mean,
                 found.clarity,
@@ -277,13 +282,13 @@ fn bad_input_is_refused() {
     let plane = Scene::new(32, 32, &CLEAN, |x, y| Some(0.1 * x + 0.2 * y));
     let flat = vec![plane.colors[500]; 1024];
     let bytes: Vec<u8> = flat.iter().flatten().flat_map(|v| (*v as f32).to_ne_bytes()).collect();
-    let image = ofc_core::image::Image::interleaved(
+    let image = ofc_core::picture::Image::interleaved(
         &bytes,
         32,
         32,
         32 * 12,
-        ofc_core::image::Sample::F32,
-        ofc_core::image::Order::Rgb,
+        ofc_core::picture::Sample::F32,
+        ofc_core::picture::Order::Rgb,
     )
     .unwrap();
     assert_eq!(closed_form(&image, |w| w.masked, &root, None, 60), Err(OrthogonalError::NoCells));

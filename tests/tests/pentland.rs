@@ -1,8 +1,8 @@
 //! Pentland's tilt against explicit loops over pixels, and on surfaces where the answer is known.
 
-use ofc_core::rng::Rng;
-use ofc_core::tilt::Tilts;
-use ofc_core::tilt::pentland::tilts;
+use ofc_core::light::tilt::Tilts;
+use ofc_core::light::tilt::pentland::tilts;
+use ofc_core::math::rng::Rng;
 use ofc_tests::linear::eliminate;
 use ofc_tests::linear_scenes::{Scene, sphere, three_lights};
 use ofc_tests::tolerances::{REORDERED_SUM, SYMMETRIC_TILT};

@@ -1,8 +1,8 @@
 //! Real photographs against their ground truth.
 
-use ofc_core::lmeds;
-use ofc_core::normals::{self, Length};
-use ofc_core::solve::{Outcome, Params, Road, SlantSource, Solution, solve, workspace_len};
+use ofc_core::color::lmeds;
+use ofc_core::solve::{OrientationMethod, Outcome, Params, SlantSource, Solution, solve, workspace_len};
+use ofc_core::surface::normals::{self, Length};
 use ofc_tests::linear::{
     Matrix, apply, cholesky, degrees_between, median, nearest_orthogonal, transpose, unit,
 };
@@ -11,7 +11,7 @@ use ofc_tests::tolerances::PHOTOGRAPH_SEED;
 
 fn seeded(seed: u64) -> Params {
     let lmeds = lmeds::Params { seed, ..lmeds::Params::default() };
-    Params { lmeds, road: Road::Paper, ..Params::default() }
+    Params { lmeds, orientation_method: OrientationMethod::Direct, ..Params::default() }
 }
 
 fn solved(photograph: &Photograph, params: &Params) -> Solution {

@@ -1,14 +1,14 @@
 //! The whole pipeline on rendered pictures.
 
-use ofc_core::constrained_slant::roots;
-use ofc_core::ellipsoid;
-use ofc_core::image::{Order, Sample, Usable};
-use ofc_core::integrability::integral;
-use ofc_core::lmeds;
-use ofc_core::normals::{Length, normal};
-use ofc_core::orientation::{Orientation, RANK_THRESHOLD, compose};
-use ofc_core::rng::Rng;
-use ofc_core::solve::{Outcome, Params, Road, SlantSource, Solution, solve, workspace_len};
+use ofc_core::color::ellipsoid;
+use ofc_core::color::lmeds;
+use ofc_core::light::constrained_slant::roots;
+use ofc_core::math::rng::Rng;
+use ofc_core::orientation::integrability::integral;
+use ofc_core::orientation::matrix::{Orientation, RANK_THRESHOLD, compose};
+use ofc_core::picture::{Order, Sample, Usable};
+use ofc_core::solve::{OrientationMethod, Outcome, Params, SlantSource, Solution, solve, workspace_len};
+use ofc_core::surface::normals::{Length, normal};
 use ofc_tests::linear::{Matrix, degrees_between, length, median, multiply};
 use ofc_tests::linear_scenes::{
     Layout, Scene, cone, cylinder, direction, ellipsoid as ellipsoid_surface, paraboloid, plane, sphere,
@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 
 fn seeded(seed: u64) -> Params {
     let lmeds = lmeds::Params { seed, ..lmeds::Params::default() };
-    Params { lmeds, road: Road::Paper, ..Params::default() }
+    Params { lmeds, orientation_method: OrientationMethod::Direct, ..Params::default() }
 }
 
 fn solved(scene: &Scene, params: &Params) -> Solution {

@@ -1,9 +1,9 @@
 //! Effective ranks of rendered scenes that lack something, of complete ones, and of the photographs.
 
-use ofc_core::image::{Image, Order, Sample, Usable};
-use ofc_core::inliers::Inliers;
-use ofc_core::lmeds;
-use ofc_core::rank::{Rank, rank};
+use ofc_core::color::inliers::Inliers;
+use ofc_core::color::lmeds;
+use ofc_core::color::rank::{Rank, rank};
+use ofc_core::picture::{Image, Order, Sample, Usable};
 use ofc_core::solve::{self, Outcome};
 use ofc_tests::photographs;
 use ofc_tests::shaded_scenes::{CLEAN, Light, PAPER, Scene, cap, lopsided};

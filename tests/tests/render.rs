@@ -1,7 +1,7 @@
 //! The renderer against eqs. 1-7 written out pixel by pixel.
 #![allow(clippy::cast_sign_loss, clippy::cast_possible_wrap, reason = "small pixel numbers")]
 
-use ofc_core::image::{Image, ImageError, Order, Sample, Window};
+use ofc_core::picture::{Image, ImageError, Order, Sample, Window};
 use ofc_core::render::{
     Canvas, DepthMap, DepthMapError, Lights, LightsError, Outputs, Params, RenderError, Rendering, Rows,
     normals_from_depth, render,

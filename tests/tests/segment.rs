@@ -1,8 +1,8 @@
 //! Segmentation: two spheres of different material and light, noise, what cannot be segmented, bad input.
 
-use ofc_core::image::{Image, Order, Sample, Usable};
-use ofc_core::segment::patches::{self, patches};
-use ofc_core::segment::{Params, Regions, SegmentError, colors_len, mark, segment};
+use ofc_core::color::segment::patches::{self, patches};
+use ofc_core::color::segment::{Params, Regions, SegmentError, colors_len, mark, segment};
+use ofc_core::picture::{Image, Order, Sample, Usable};
 use ofc_core::solve::{self, Outcome};
 use ofc_tests::photographs;
 use ofc_tests::shaded_scenes::{CLEAN, Light, OTHER, Scene, cap, dot, lopsided, median_error, moved};
@@ -69,7 +69,7 @@ fn each_region_has_its_own_ellipsoid() {
     let (labels, regions) = run(&scene.image(), &Params::default());
     for (&(label, ..), side) in scores(&labels, &truth, 2).iter().zip(1..) {
         let region = regions.iter().find(|region| region.label == label).unwrap();
-        let c = ofc_core::ellipsoid::matrix(&region.coefficients);
+        let c = ofc_core::color::ellipsoid::matrix(&region.coefficients);
         for (&color, _) in scene.colors.iter().zip(&truth).filter(|&(_, &t)| t == side) {
             let form = dot(color, c.map(|row| dot(row, color)));
             assert!((form - 1.0).abs() < 1e-3, "{form}");

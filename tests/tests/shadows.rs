@@ -1,9 +1,9 @@
 //! Colors that one of the lights does not reach.
 
-use ofc_core::image::{Image, Order, Sample};
+use ofc_core::picture::Faces;
+use ofc_core::picture::{Image, Order, Sample};
 use ofc_core::render::{self, Canvas, Lights, Outputs, render};
-use ofc_core::shadows::Shadows;
-use ofc_core::solve::{Outcome, Params, Road, Solution, solve, workspace_len};
+use ofc_core::solve::{OrientationMethod, Outcome, Params, Solution, solve, workspace_len};
 use ofc_tests::depth_maps::{Relief, direction, peaks, sphere};
 
 const SIZE: usize = 192;
@@ -32,19 +32,19 @@ fn solved(relief: &Relief, pixels: &[u8], params: Params) -> Solution {
     let mut workspace = vec![f32::NAN; workspace_len(SIZE * SIZE, params.lmeds.sample_size)];
     let solution = solve(&image, &params, &mut workspace).unwrap();
     assert_eq!(solution.outcome, Outcome::Solved);
-    let census = &solution.census;
-    let sum = census.usable
-        + census.masked_out
-        + census.non_finite
-        + census.dark
-        + census.saturated
-        + census.shaded;
+    let pixel_counts = &solution.pixel_counts;
+    let sum = pixel_counts.usable
+        + pixel_counts.masked_out
+        + pixel_counts.non_finite
+        + pixel_counts.dark
+        + pixel_counts.saturated
+        + pixel_counts.shaded;
     assert_eq!(sum, SIZE * SIZE);
     solution
 }
 
 /// How many faces there are, and the largest cosine between their normals and the lights' colors that lie in them.
-fn faces(shadows: &Shadows) -> (usize, f64) {
+fn faces(shadows: &Faces) -> (usize, f64) {
     let (mut count, mut worst) = (0, 0.0_f64);
     for face in shadows.faces.iter().filter(|face| face.normal != [0.0; 3]) {
         let mut cosines: Vec<f64> = (0..3)
@@ -70,13 +70,14 @@ fn the_faces_are_spanned_by_the_colors_of_two_lights() {
     for noise in [0.0, 0.5, 1.5] {
         let pixels = picture(&relief, [45.0, 50.0, 55.0], noise);
         let solution = solved(&relief, &pixels, Params::default());
-        let (count, worst) = faces(&solution.inliers.usable.shadows);
-        let share = solution.census.shaded as f64 / (solution.census.shaded + solution.census.usable) as f64;
+        let (count, worst) = faces(&solution.inliers.usable.shadow_faces);
+        let share = solution.pixel_counts.shaded as f64
+            / (solution.pixel_counts.shaded + solution.pixel_counts.usable) as f64;
         println!("noise {noise}: {count} faces, off by {worst:.4}, {:.1} % shaded", 100.0 * share);
         assert!(count == 3 && worst < 0.02 && (0.2..0.67).contains(&share));
         // Who wants them gets them.
         let kept = solved(&relief, &pixels, Params { reject_shadows: false, ..Params::default() });
-        assert_eq!((kept.census.shaded, kept.inliers.usable.shadows), (0, Shadows::NONE));
+        assert_eq!((kept.pixel_counts.shaded, kept.inliers.usable.shadow_faces), (0, Faces::NONE));
     }
 }
 
@@ -86,9 +87,9 @@ fn without_shadows_there_are_no_faces() {
     for (name, relief) in [("peaks", peaks(SIZE, SIZE)), ("bottle", bottle())] {
         for noise in [0.3, 1.0] {
             let pixels = picture(&relief, [15.0, 18.0, 20.0], noise);
-            let params = Params { road: Road::Paper, ..Params::default() };
+            let params = Params { orientation_method: OrientationMethod::Direct, ..Params::default() };
             let solution = solved(&relief, &pixels, params);
-            assert_eq!(solution.census.shaded, 0, "{name} {noise}");
+            assert_eq!(solution.pixel_counts.shaded, 0, "{name} {noise}");
         }
     }
 }

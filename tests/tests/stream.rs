@@ -1,12 +1,12 @@
 //! Rows instead of pictures.
 
-use ofc_core::image::{Image, Order, Sample};
-use ofc_core::lmeds::{FitError, Method};
-use ofc_core::normals::{self, Length};
-use ofc_core::rng::Rng;
-use ofc_core::solve::{Outcome, Road, SlantFallback, Solution, solve, workspace_len};
+use ofc_core::color::lmeds::{FitError, Method};
+use ofc_core::light::tilt::TiltEstimator;
+use ofc_core::math::rng::Rng;
+use ofc_core::picture::{Image, Order, Sample};
+use ofc_core::solve::{OrientationMethod, Outcome, SlantFallback, Solution, solve, workspace_len};
 use ofc_core::stream::{Change, Memory, Params, Pass, State, Stream, StreamError, places_len, values_len};
-use ofc_core::tilt::TiltEstimator;
+use ofc_core::surface::normals::{self, Length};
 use ofc_tests::bust::bust;
 use ofc_tests::linear::{Matrix, degrees_between, dot, length};
 use ofc_tests::linear_scenes::{
@@ -28,7 +28,7 @@ impl Camera {
         let (width, height, sample) = (image.width(), image.height(), params.solve.lmeds.sample_size);
         let state = State::new(width, height, image.sample(), params).unwrap();
         // Whatever the memory holds, it means nothing.
-        let values = vec![f32::NAN; values_len(width, height, sample, params.solve.road)];
+        let values = vec![f32::NAN; values_len(width, height, sample, params.solve.orientation_method)];
         Self { state, values, places: vec![0xa5; places_len(width, height, sample)] }
     }
 
@@ -65,14 +65,14 @@ fn sampling(sample_size: u32) -> Params {
     params
 }
 
-/// On the paper's road, with shadows, as streams are without the feature `full-streams`.
+/// with the direct method, with shadows, as streams are without the feature `full-streams`.
 fn on_paper(mut params: Params) -> Params {
-    (params.solve.road, params.solve.reject_shadows) = (Road::Paper, false);
+    (params.solve.orientation_method, params.solve.reject_shadows) = (OrientationMethod::Direct, false);
     params
 }
 
-/// Both roads, without shadows and with them.
-fn roads(params: Params) -> [Params; 3] {
+/// Both methods, without shadows and with them.
+fn methods(params: Params) -> [Params; 3] {
     let mut shaded = params;
     shaded.solve.reject_shadows = false;
     [params, shaded, on_paper(params)]
@@ -150,13 +150,13 @@ fn a_sample_of_everything_gives_the_same_bits() {
                 let scene = if sample == Sample::F32 { noisy.clone() } else { noisy.clone().rounded() };
                 let encoded = scene.encode_as(Layout { sample, order, gap: 12 });
                 let usable = scene.colors.iter().filter(|c| c.iter().any(|&v| v > 0.0)).count();
-                // All pixels, and on the paper's road exactly as many as there are: windows are all there where there is room for all pixels, usable or not.
+                // All pixels, and with the direct method exactly as many as there are: windows are all there where there is room for all pixels, usable or not.
                 let alone = on_paper(sampling(usable as u32));
-                for params in roads(sampling((width * height) as u32)).into_iter().chain([alone]) {
+                for params in methods(sampling((width * height) as u32)).into_iter().chain([alone]) {
                     let (outcome, candidates) = assert_same(&encoded.image(), params);
                     solved += usize::from(outcome == Outcome::Solved);
                     chosen += usize::from(candidates > 1);
-                    shaded += usize::from(whole(&encoded.image(), &params).census.shaded > 0);
+                    shaded += usize::from(whole(&encoded.image(), &params).pixel_counts.shaded > 0);
                 }
             }
         }
@@ -168,7 +168,7 @@ fn a_sample_of_everything_gives_the_same_bits() {
             .quantized();
         let params = sampling(320 * 240);
         assert_same(&portrait.whole(), params);
-        in_portraits += usize::from(whole(&portrait.whole(), &params).census.shaded > 1000);
+        in_portraits += usize::from(whole(&portrait.whole(), &params).pixel_counts.shaded > 1000);
     }
     println!(
         "{solved} solved, {chosen} of them with a choice, {shaded} with shadows and {in_portraits} portraits"
@@ -200,7 +200,7 @@ fn degenerate_scenes_are_refused_like_pictures() {
     ] {
         let layout = Layout { sample: Sample::U8, order: Some(Order::Rgb), gap: 0 };
         let encoded = scene.with_noise(0.5, &mut rng).rounded().encode_as(layout);
-        outcomes.extend(roads(sampling(4200)).map(|params| assert_same(&encoded.image(), params).0));
+        outcomes.extend(methods(sampling(4200)).map(|params| assert_same(&encoded.image(), params).0));
     }
     assert!(
         outcomes.contains(&Outcome::RankDeficient) && !outcomes.contains(&Outcome::Solved),
@@ -212,7 +212,7 @@ fn degenerate_scenes_are_refused_like_pictures() {
         [level(x / 10), level(y / 10), level((x + y) / 20)]
     });
     let encoded = few.encode_as(Layout { sample: Sample::U8, order: Some(Order::Rgb), gap: 0 });
-    println!("{:?}", roads(sampling(4200)).map(|params| assert_same(&encoded.image(), params)));
+    println!("{:?}", methods(sampling(4200)).map(|params| assert_same(&encoded.image(), params)));
 }
 
 #[test]
@@ -244,7 +244,7 @@ fn parameters_reach_every_pass() {
 }
 
 #[test]
-fn frames_too_low_for_cells_take_the_paper_s_road() {
+fn frames_too_low_for_cells_take_the_direct_method() {
     let strip = Scene::paint(400, 3, |x, y| {
         let (a, b) = (0.004 * (x as f64 - 199.5), 0.6 * (1.0 - y as f64));
         let normal = [a.sin(), a.cos() * b.sin(), a.cos() * b.cos()];
@@ -256,7 +256,7 @@ fn frames_too_low_for_cells_take_the_paper_s_road() {
     assert_eq!(camera.frame(&image), Ok(Pass::Outward));
     assert_eq!(camera.frame(&image), Ok(Pass::Tilts));
     println!("{:?}", assert_same(&image, sampling(1200)));
-    // Nor is the other road taken where the tilts are given.
+    // Nor is the joint method taken where the tilts are given.
     let mut params = sampling(1200);
     params.solve.tilts = TiltEstimator::Given([0.3, 2.4, -1.8]);
     let mut camera = Camera::new(&image, params);
@@ -270,13 +270,17 @@ fn masked_photographs_give_the_same_bits() {
         let Some(photograph) = load(name) else { return };
         let image = photograph.image();
         let params = sampling((image.width() * image.height()) as u32);
-        println!("{name}: {:?}", roads(params).map(|params| assert_same(&image, params)));
+        println!("{name}: {:?}", methods(params).map(|params| assert_same(&image, params)));
     }
 }
 
-/// A bust in QVGA with noise, rounded to bytes, under lights that are well known on that road.
-fn portrait(road: Road, seed: u64) -> shaded_scenes::Scene {
-    let lights = if road == Road::Joint { shaded_scenes::CLEAN } else { shaded_scenes::PAPER };
+/// A bust in QVGA with noise, rounded to bytes, under lights that are well known on that method.
+fn portrait(orientation_method: OrientationMethod, seed: u64) -> shaded_scenes::Scene {
+    let lights = if orientation_method == OrientationMethod::Joint {
+        shaded_scenes::CLEAN
+    } else {
+        shaded_scenes::PAPER
+    };
     shaded_scenes::Scene::new(320, 240, &lights, bust(240.0)).with_noise(1.0, seed).quantized()
 }
 
@@ -290,8 +294,8 @@ fn apart(a: &Matrix, b: &Matrix) -> (f64, f64) {
 #[test]
 fn a_sample_of_a_portrait() {
     println!("against solve: largest angle of F's rows, strength; median error of the normals of both");
-    for (seed, params) in (0..8).flat_map(|seed| roads(Params::default()).map(|params| (seed, params))) {
-        let (mut params, scene) = (params, portrait(params.solve.road, seed));
+    for (seed, params) in (0..8).flat_map(|seed| methods(Params::default()).map(|params| (seed, params))) {
+        let (mut params, scene) = (params, portrait(params.solve.orientation_method, seed));
         params.solve.lmeds.seed = seed;
         let image = scene.whole();
         let mut picture = params;
@@ -307,7 +311,7 @@ fn a_sample_of_a_portrait() {
         let errors = [found, &expected].map(|orientation| median_error(&scene, &orientation.f_inverse));
         println!(
             "{:?} {}, {seed}: {angle:.2} deg, {strength:.4}; {:.2}, {:.2} deg",
-            params.solve.road, params.solve.reject_shadows, errors[0], errors[1]
+            params.solve.orientation_method, params.solve.reject_shadows, errors[0], errors[1]
         );
         assert!(angle < SAMPLED_ANGLE && strength < SAMPLED_STRENGTH);
         assert!(errors[0] < errors[1] + SAMPLED_ANGLE);
@@ -333,7 +337,7 @@ fn samples_of_photographs() {
 
 #[test]
 fn frames_that_are_none() {
-    let scene = portrait(Road::Paper, 1);
+    let scene = portrait(OrientationMethod::Direct, 1);
     let image = scene.whole();
     let row = |y| image.row(y).unwrap();
     let params = on_paper(Params::default());
@@ -395,7 +399,7 @@ fn streams_that_are_none() {
     fallback.solve.fallback = SlantFallback::TiltIntegrability;
     assert_eq!(new(320, 240, fallback), Some(StreamError::Params));
     let mut state = State::new(320, 240, Sample::U8, params).unwrap();
-    let (values, places) = (values_len(320, 240, 2048, Road::Joint), places_len(320, 240, 2048));
+    let (values, places) = (values_len(320, 240, 2048, OrientationMethod::Joint), places_len(320, 240, 2048));
     assert_eq!((values, places), (10_240, 2048));
     assert!(size_of::<State>() + 4 * values + places <= 48 << 10, "{}", size_of::<State>());
     for (short_values, short_places) in [(1, 0), (0, 1)] {
@@ -418,7 +422,7 @@ fn dark_and_white_frames_say_so() {
 
 /// A stream that has seen a portrait.
 fn solved(params: Params) -> (Camera, shaded_scenes::Scene) {
-    let scene = portrait(params.solve.road, 100);
+    let scene = portrait(params.solve.orientation_method, 100);
     let mut camera = Camera::new(&scene.whole(), params);
     assert_eq!(camera.cold(&scene.whole()), Ok(Pass::Refine));
     assert_eq!(camera.state.drift(), None);
@@ -444,7 +448,7 @@ fn refine(params: Params) {
         "against solve of the frame: angle, strength; against the frame before: share, angle, dispersion"
     );
     for seed in 101..109 {
-        let scene = portrait(params.solve.road, seed);
+        let scene = portrait(params.solve.orientation_method, seed);
         let before = camera.state.orientation().unwrap().f;
         let (share, change) = refined(&mut camera, &scene);
         let expected = whole(&scene.whole(), &params).choice.unwrap().orientation;
@@ -472,9 +476,15 @@ fn warm_frames_look_at_as_many_pixels_as_wanted() {
     let mut seen = Vec::new();
     for refine_pixels in [0, 16_384, 1] {
         let (mut camera, _) = solved(Params { refine_pixels, ..Params::default() });
-        refined(&mut camera, &portrait(Road::Joint, 101));
-        let census = camera.state.solution().census;
-        seen.push(census.usable + census.masked_out + census.non_finite + census.dark + census.saturated);
+        refined(&mut camera, &portrait(OrientationMethod::Joint, 101));
+        let pixel_counts = camera.state.solution().pixel_counts;
+        seen.push(
+            pixel_counts.usable
+                + pixel_counts.masked_out
+                + pixel_counts.non_finite
+                + pixel_counts.dark
+                + pixel_counts.saturated,
+        );
     }
     // 29,000 usable pixels and a third of the others are more than twice 16,384; never less than 16 rows.
     assert_eq!(seen, [320 * 240, 320 * 80, 320 * 16]);
@@ -531,7 +541,7 @@ fn other_lights_need_a_cold_start() {
     let params = on_paper(Params::default());
     // How many must fit is the caller's to say; a black frame fits nobody.
     let (mut strict, _) = solved(Params { smallest_share: 0.99, ..params });
-    assert_eq!(strict.frame(&portrait(Road::Paper, 100).whole()), Ok(Pass::Colors));
+    assert_eq!(strict.frame(&portrait(OrientationMethod::Direct, 100).whole()), Ok(Pass::Colors));
     let (mut lenient, _) = solved(Params { smallest_share: 0.0, ..params });
     let black = Scene::paint(320, 240, |_, _| [0.0; 3]);
     let black = black.encode_as(Layout { sample: Sample::U8, order: Some(Order::Rgb), gap: 0 });

@@ -1,8 +1,8 @@
 //! The numbers that the paper prints: Table 1, Figure 1 and Figure 2.
 
-use ofc_core::constrained_slant::roots;
-use ofc_core::ellipsoid::{self, Ellipsoid};
-use ofc_core::orientation;
+use ofc_core::color::ellipsoid::{self, Ellipsoid};
+use ofc_core::light::constrained_slant::roots;
+use ofc_core::orientation::matrix;
 use ofc_tests::linear::{Matrix, degrees_between, inverse, length, multiply, transpose};
 use ofc_tests::linear_scenes::{direction, table_1_f};
 use ofc_tests::tolerances::{LAST_PRINTED_DIGIT, ONE_DECIMAL, TWO_DECIMALS};
@@ -42,7 +42,7 @@ fn the_correct_rows_follow_from_lights_and_colors() {
         [(0, 1), (0, 2), (1, 2)].map(|(i, j): (usize, usize)| degrees_between(f[i], f[j]).to_radians().cos());
     assert_close(ellipsoid.cosines, angles, 1e-12);
     // And back: F from the printed numbers.
-    let again = orientation::compose(NORMS, SLANTS.map(f64::to_radians), TILTS.map(f64::to_radians));
+    let again = matrix::compose(NORMS, SLANTS.map(f64::to_radians), TILTS.map(f64::to_radians));
     for (row, wanted) in again.iter().zip(f) {
         // A row's length times what the printed angles leave open, and what the printed norm does.
         assert_close(*row, wanted, NORMS[1] * 2.0 * LAST_PRINTED_DIGIT.to_radians() + LAST_PRINTED_DIGIT);

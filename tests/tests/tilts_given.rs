@@ -1,12 +1,12 @@
 //! Slants by integrability when the tilts are given.
 
-use ofc_core::constrained_slant::{least_squares, residual_rms, roots};
-use ofc_core::image::{Usable, Window};
-use ofc_core::integrability;
-use ofc_core::mat3::svd;
-use ofc_core::orientation::{Orientation, compose};
-use ofc_core::orthogonal::OrthogonalError;
-use ofc_core::orthogonal::tilts_given::{Params, tilts_given, workspace_len};
+use ofc_core::light::constrained_slant::{least_squares, residual_rms, roots};
+use ofc_core::math::mat3::svd;
+use ofc_core::orientation::integrability;
+use ofc_core::orientation::matrix::{Orientation, compose};
+use ofc_core::orientation::orthogonal::OrthogonalError;
+use ofc_core::orientation::orthogonal::tilts_given::{Params, tilts_given, workspace_len};
+use ofc_core::picture::{Usable, Window};
 use ofc_core::solve;
 use ofc_tests::photographs;
 use ofc_tests::shaded_scenes::{CLEAN, Matrix, PAPER, Scene, cap, dot, lopsided, median_error};
@@ -86,7 +86,10 @@ fn on_photographs_the_limit_keeps_the_surface_from_flattening() {
     for name in ["gelsight_ball_6mm", "gelsight_ball_9mm", "cat_figurine"] {
         let Some(photo) = photographs::load(name) else { return };
         let image = photo.image();
-        let params = solve::Params { road: solve::Road::Paper, ..solve::Params::default() };
+        let params = solve::Params {
+            orientation_method: solve::OrientationMethod::Direct,
+            ..solve::Params::default()
+        };
         let len = solve::workspace_len(photo.width * photo.height, params.lmeds.sample_size);
         let mut workspace = vec![0.0; len];
         let solution = solve::solve(&image, &params, &mut workspace).expect("a solution");
@@ -97,7 +100,7 @@ fn on_photographs_the_limit_keeps_the_surface_from_flattening() {
             let f = Orientation::new(compose(ellipsoid.norms, slants, tilts), 1e-6);
             let mut errors: Vec<f64> = Vec::new();
             image.for_each_window(|window| {
-                ofc_core::image::for_each_bit(solution.inliers.bits(window), |i| {
+                ofc_core::picture::for_each_bit(solution.inliers.bits(window), |i| {
                     let n = f.f_inverse.map(|row| dot(row, window.pixel(i).map(f64::from)));
                     let truth = photo.normals[window.y * photo.width + window.x + i].map(f64::from);
                     errors.push((dot(n, truth) / dot(n, n).sqrt()).clamp(-1.0, 1.0).acos().to_degrees());

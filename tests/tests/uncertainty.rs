@@ -1,9 +1,9 @@
 //! Whether errors of normals are as large as they are said to be, over rendered scenes.
 
-use ofc_core::image::{Image, Order, Sample};
-use ofc_core::normals::{Length, TooShort, normal};
-use ofc_core::solve::{Outcome, Params, Road, Solution, solve, workspace_len};
-use ofc_core::uncertainty::{Sources, Uncertainty, of_turn};
+use ofc_core::picture::{Image, Order, Sample};
+use ofc_core::solve::{OrientationMethod, Outcome, Params, Solution, solve, workspace_len};
+use ofc_core::surface::normals::{Length, TooShort, normal};
+use ofc_core::surface::uncertainty::{Sources, Uncertainty, of_turn};
 use ofc_tests::depth_maps::egg;
 use ofc_tests::linear::{
     Matrix, apply, degrees_between, dot, inverse, median, multiply, nearest_orthogonal, transpose, unit,
@@ -141,7 +141,7 @@ fn shares_below_one_two_and_three_sigma() {
                 .expect("a picture");
             let solution = solved(&image, &Params::default());
             assert_eq!(solution.outcome, Outcome::Solved, "{name} {number} {noise}");
-            let sources = Sources::of(&solution).expect("the default road");
+            let sources = solution.uncertainty_sources().expect("the joint method");
 
             let f = color_orientation(&a, &b);
             let off = Off::new(sources.f_inverse, f);
@@ -213,7 +213,7 @@ fn photographs() {
         let Some(photograph) = photographs::load(name) else { return };
         let image = photograph.image();
         let solution = solved(&image, &Params::default());
-        let sources = Sources::of(&solution).expect("the default road");
+        let sources = solution.uncertainty_sources().expect("the joint method");
         let uncertainty = Uncertainty::new(&sources);
         let mut shares = Shares::default();
         let mut sigmas = Vec::new();
@@ -235,7 +235,7 @@ fn no_normal_is_pi_and_exact_colors_are_exact() {
     let (pixels, _) = rendered(&relief, &a, &b, 0.0, 1);
     let image = Image::interleaved(&pixels, 160, 120, 480, Sample::U8, Order::Rgb).expect("a picture");
     let solution = solved(&image, &Params::default());
-    let sources = Sources::of(&solution).expect("the default road");
+    let sources = solution.uncertainty_sources().expect("the joint method");
     let uncertainty = Uncertainty::new(&sources);
     let mut angles = vec![f32::NAN; 170 * 119 + 160];
     assert_eq!(uncertainty.compute(&image, solution.inliers.selector(), &mut angles, 170), Ok(()));
@@ -262,7 +262,8 @@ fn no_normal_is_pi_and_exact_colors_are_exact() {
     let (bright, dark) = (noise.angle([100.0, 90.0, 80.0]), noise.angle([50.0, 45.0, 40.0]));
     assert!((dark / bright - 2.0).abs() < 1e-9);
 
-    let paper = solved(&image, &Params { road: Road::Paper, ..Params::default() });
+    let paper =
+        solved(&image, &Params { orientation_method: OrientationMethod::Direct, ..Params::default() });
     assert_eq!(paper.outcome, Outcome::Solved);
-    assert_eq!(Sources::of(&paper), None);
+    assert_eq!(paper.uncertainty_sources(), None);
 }

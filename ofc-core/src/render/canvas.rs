@@ -1,6 +1,6 @@
 //! A picture that is written: the caller's pixels, checked once when the view is made.
 
-use crate::image::{ImageError, Order, Sample, span};
+use crate::picture::{ImageError, Order, Sample, span};
 use libm::floor;
 
 /// Interleaved pixels over borrowed bytes, of any alignment. u16 and f32 are in the machine's byte order.

@@ -1,7 +1,7 @@
 //! A view over the caller's depth map, and the normals of its surface.
 
-use crate::image::{ImageError, Mask, Sample, span};
-use crate::mat3;
+use crate::math::mat3;
+use crate::picture::{ImageError, Mask, Sample, span};
 use libm::sqrt;
 
 /// Why a depth map's view cannot be made.

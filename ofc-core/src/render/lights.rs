@@ -3,7 +3,7 @@
 //! # Reference
 //! Section 1.1, eqs. 4-7.
 
-use crate::mat3::{self, Mat3};
+use crate::math::mat3::{self, Mat3};
 
 /// Lights at most: a bit each in a pixel's mask.
 pub const MAX_LIGHTS: usize = u32::BITS as usize;

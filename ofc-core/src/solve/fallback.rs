@@ -5,12 +5,12 @@
 //! tilts".
 
 use super::SlantSource;
-use crate::constrained_slant;
-use crate::ellipsoid::Ellipsoid;
-use crate::image::Image;
-use crate::inliers::Inliers;
-use crate::orthogonal::tilts_given;
-use crate::slant::{lee_rosenfeld, pentland, zheng_chellappa};
+use crate::color::ellipsoid::Ellipsoid;
+use crate::color::inliers::Inliers;
+use crate::light::constrained_slant;
+use crate::light::slant::{lee_rosenfeld, pentland, zheng_chellappa};
+use crate::orientation::orthogonal::tilts_given;
+use crate::picture::Image;
 
 /// What to do where eqs. 25 have no root (section 3.3). The lengths of the rows of F are those of the ellipsoid, whatever
 /// the slants are.

@@ -1,25 +1,25 @@
-//! The passes of a cold start, on the paper's road.
+//! The passes of a cold start, with the direct method.
 
 use super::rows::Rows;
 use super::strata::{Sampled, Slots, Strata};
 use super::{FULL, Held, Memory, Pass, State, StreamError, room};
-use crate::cells::{Block, for_each_block_of_rows};
-use crate::constrained_slant::{self, Candidates, MAX_CANDIDATES, SlantRoot};
-use crate::ellipsoid::Coefficients;
-use crate::image::{Census, Image, Usable, WINDOW, Window, first_bits, for_each_bit};
-use crate::inliers::Inliers;
-use crate::integrability;
-use crate::lmeds::{self, FitError, Method};
-use crate::pixels::second_differences;
-use crate::rng::Rng;
+use crate::color::ellipsoid::Coefficients;
+use crate::color::inliers::Inliers;
+use crate::color::lmeds::{self, FitError, Method};
+use crate::light::constrained_slant::{self, Candidates, MAX_CANDIDATES, SlantRoot};
+use crate::light::tilt::{TiltEstimator, Tilts, pentland};
+use crate::math::rng::Rng;
+use crate::orientation::integrability;
+use crate::picture::cells::{Block, for_each_block_of_rows};
+use crate::picture::second_differences;
+use crate::picture::{Image, PixelCounts, Usable, WINDOW, Window, first_bits, for_each_bit};
 use crate::solve::{Choice, Outcome, SlantFallback, SlantSource, orient};
-use crate::tilt::{TiltEstimator, Tilts, pentland};
 
 impl State {
     pub(super) fn begin_colors(&mut self) {
         let lmeds = self.params.solve.lmeds;
         self.strata = Strata::new(lmeds.seed, room(self.width, self.height, lmeds.sample_size));
-        self.census = Census::default();
+        self.pixel_counts = PixelCounts::default();
         self.second_differences = (0.0, 0);
     }
 
@@ -29,7 +29,7 @@ impl State {
         // The shadows are those of a model that this frame may replace.
         let usable = Usable::below(self.usable().saturation);
         row.for_each_window(|window| {
-            let bits = usable.count_window(window, &mut self.census);
+            let bits = usable.count_window(window, &mut self.pixel_counts);
             let (sum, count) = &mut self.second_differences;
             second_differences(window, bits, sum, count);
             for_each_bit(bits, |i| self.strata.offer(window, y, i, &mut slots));
@@ -47,11 +47,11 @@ impl State {
 
     #[inline(never)]
     pub(super) fn end_colors(&mut self, memory: &mut Memory) -> Result<(), StreamError> {
-        self.solution.restart(self.census);
+        self.solution.restart(self.pixel_counts);
         self.concluded = false;
-        lmeds::enough(&self.census, self.width * self.height).map_err(StreamError::Fit)?;
-        self.scale = lmeds::reciprocal_power_of_two(self.census.largest);
-        self.rows = Rows::new(self.height, &self.census, self.params.refine_pixels);
+        lmeds::enough(&self.pixel_counts, self.width * self.height).map_err(StreamError::Fit)?;
+        self.scale = lmeds::reciprocal_power_of_two(self.pixel_counts.largest);
+        self.rows = Rows::new(self.height, &self.pixel_counts, self.params.refine_pixels);
         self.drift = None;
         let found = self.search(memory);
         let fit = self.fit(found, memory);
@@ -72,7 +72,7 @@ impl State {
             Method::LeastSquares => lmeds::least_squares(&pixels, usable, self.scale),
         };
         let fit = &mut self.solution.fit;
-        lmeds::judge::<FULL>(&pixels, usable, count, self.scale, scaled, params, workspace, fit)
+        lmeds::evaluate::<FULL>(&pixels, usable, count, self.scale, scaled, params, workspace, fit)
     }
 
     /// What follows from the fit.
@@ -81,7 +81,7 @@ impl State {
         let (pixels, workspace) = self.sampled(memory).ok_or(FitError::WorkspaceTooShort)?;
         let params = &self.params.solve;
         if FULL && fit.is_ok() && params.reject_shadows {
-            self.solution.leave_out_shadows(&pixels, params, workspace);
+            self.solution.reject_shadows(&pixels, params, workspace);
         }
         self.solution.model(&pixels, fit, params, workspace)
     }

@@ -1,16 +1,16 @@
-//! The last passes of a cold start on the other road, and what a frame makes of its answer.
+//! The last passes of a cold start with the joint method, and what a frame makes of its answer.
 
 use super::cold::keep_window;
 use super::{Held, Memory, Pass, State, rows_len};
-use crate::image::{Image, Window};
-use crate::joint::{STRIP, Survey};
-use crate::mat3::{self, Mat3};
+use crate::math::mat3::{self, Mat3};
+use crate::orientation::joint::{CellSums, STRIP};
+use crate::picture::{Image, Window};
 
 impl State {
     pub(super) fn begin_outward(&mut self, memory: &mut Memory) {
         let room = memory.values.len().saturating_sub(rows_len(self.width));
-        let survey = Survey::begin(self.width, self.height, room, memory.values);
-        self.held = survey.map_or(Held::Nothing, Held::Survey);
+        let sums = CellSums::begin(self.width, self.height, room, memory.values);
+        self.held = sums.map_or(Held::Nothing, Held::CellSums);
         self.inlier_count = 0;
     }
 
@@ -24,8 +24,8 @@ impl State {
             let exposed = inliers.usable.exposed(window);
             let bits = inliers.bits_among(window, exposed);
             self.inlier_count += bits.count_ones() as usize;
-            let Held::Survey(survey) = &mut self.held else { return };
-            survey.see(window.x, y, exposed);
+            let Held::CellSums(sums) = &mut self.held else { return };
+            sums.see(window.x, y, exposed);
             if above + 1 < STRIP {
                 let row = rows.get_mut(above * 3 * self.width..).unwrap_or_default();
                 keep_window(self.width, window, bits, row);
@@ -33,7 +33,7 @@ impl State {
                 let strip = Strip { width: self.width, above: rows, last: window };
                 let at = [window.x, y - above];
                 let color = |row, i| strip.color(row, i);
-                survey.add(at, window.len, strip.bits(bits), &ellipsoid.root, color, numbers);
+                sums.add(at, window.len, strip.bits(bits), &ellipsoid.root, color, numbers);
             }
         });
     }
@@ -41,35 +41,35 @@ impl State {
     #[inline(never)]
     pub(super) fn end_outward(&mut self, memory: &mut Memory) {
         self.solution.inlier_count = self.inlier_count;
-        let Held::Survey(survey) = self.held else { return self.go_on(true, Pass::Tilts) };
-        let joint = survey.end(memory.values);
+        let Held::CellSums(sums) = self.held else { return self.go_on(true, Pass::Tilts) };
+        let joint = sums.end(memory.values);
         if self.solution.orient(joint, &self.params.solve) {
             return self.go_on(false, Pass::Tilts);
         }
-        let outlook = survey.outlook(memory.values);
-        let next = if outlook.is_some() { Pass::Integrability } else { Pass::Tilts };
-        self.held = outlook.map_or(Held::Nothing, Held::Outlook);
+        let window_sums = sums.window_sums(memory.values);
+        let next = if window_sums.is_some() { Pass::Integrability } else { Pass::Tilts };
+        self.held = window_sums.map_or(Held::Nothing, Held::WindowSums);
         self.go_on(true, next);
     }
 
     pub(super) fn begin_integrability(&mut self, memory: &mut Memory) {
-        if let Held::Outlook(outlook) = &self.held {
-            outlook.begin(memory.values);
+        if let Held::WindowSums(window_sums) = &self.held {
+            window_sums.begin(memory.values);
         }
     }
 
     #[inline(never)]
     pub(super) fn row_integrability(&mut self, y: usize, row: &Image, memory: &mut Memory) {
         let inliers = &self.solution.inliers;
-        if let (Held::Outlook(outlook), Some(ellipsoid)) = (&self.held, &self.solution.ellipsoid) {
-            outlook.add(y, row, inliers, &ellipsoid.root, memory.values);
+        if let (Held::WindowSums(window_sums), Some(ellipsoid)) = (&self.held, &self.solution.ellipsoid) {
+            window_sums.add(y, row, inliers, &ellipsoid.root, memory.values);
         }
     }
 
     #[inline(never)]
     pub(super) fn end_integrability(&mut self, memory: &mut Memory) {
         let joint = match &self.held {
-            Held::Outlook(outlook) => outlook.end(memory.values),
+            Held::WindowSums(window_sums) => window_sums.end(memory.values),
             _ => None,
         };
         let is_oriented = self.solution.orient(joint, &self.params.solve);

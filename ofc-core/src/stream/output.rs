@@ -1,10 +1,10 @@
 //! Normals and inliers of one row.
 
 use super::{State, StreamError};
-use crate::image::{Image, for_each_bit};
-use crate::normals::{self, Length};
-use crate::orientation::Orientation;
+use crate::orientation::matrix::Orientation;
+use crate::picture::{Image, for_each_bit};
 use crate::solve::Outcome;
+use crate::surface::normals::{self, Length};
 
 impl State {
     /// F, where there is one.

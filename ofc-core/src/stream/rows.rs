@@ -1,6 +1,6 @@
 //! Which rows of a frame refine the model: every n-th one.
 
-use crate::image::Census;
+use crate::picture::PixelCounts;
 
 /// Rows looked at in a frame, at least, where it has so many.
 const FEWEST_ROWS: usize = 16;
@@ -16,10 +16,11 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// So many rows of a frame like that of `census` that about `pixels` are looked at; all rows for no pixels.
-    pub fn new(height: usize, census: &Census, pixels: u32) -> Self {
-        let unusable = census.masked_out + census.non_finite + census.dark + census.saturated;
-        let work = census.usable + unusable / UNUSABLE;
+    /// So many rows of a frame like that of `pixel counts` that about `pixels` are looked at; all rows for no pixels.
+    pub fn new(height: usize, pixel_counts: &PixelCounts, pixels: u32) -> Self {
+        let unusable =
+            pixel_counts.masked_out + pixel_counts.non_finite + pixel_counts.dark + pixel_counts.saturated;
+        let work = pixel_counts.usable + unusable / UNUSABLE;
         let step = if pixels == 0 { 1 } else { work.div_ceil(pixels as usize) };
         Self { step: step.min(height / FEWEST_ROWS).max(1), first: 0, frames: 0 }
     }
@@ -55,7 +56,7 @@ mod tests {
     use std::vec::Vec;
 
     fn of(usable: usize, dark: usize, height: usize, pixels: u32) -> Rows {
-        Rows::new(height, &Census { usable, dark, ..Census::default() }, pixels)
+        Rows::new(height, &PixelCounts { usable, dark, ..PixelCounts::default() }, pixels)
     }
 
     #[test]

@@ -5,9 +5,9 @@
 //! kept, in their windows, where there is room for them, and otherwise one of each 2^k, at least half as many as there is
 //! room for.
 
-use crate::image::{Sample, WINDOW, Window};
-use crate::pixels::{Pixels, sum_second_differences};
-use crate::rng::Rng;
+use crate::math::rng::Rng;
+use crate::picture::{Pixels, sum_second_differences};
+use crate::picture::{Sample, WINDOW, Window};
 
 /// The column within its window that a place holds.
 const COLUMN: u8 = WINDOW as u8 - 1;

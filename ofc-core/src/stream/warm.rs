@@ -5,21 +5,21 @@
 //! of inliers these add up to the difference between its ends, however far the rows lie apart. As others are looked at in
 //! every frame, the differences of about n frames are averaged. Of the slants
 //! that agree with both those nearest to the old ones are taken. The dispersion grows or shrinks with the deviation of
-//! the inliers' residuals: as it was truncated before, so it is now. On the other road the orthogonal transformation is kept,
+//! the inliers' residuals: as it was truncated before, so it is now. with the joint method the orthogonal transformation is kept,
 //! as far as the new C lets it.
 
 use super::cold::{keep_window, kept, slants_of};
 use super::orientation::nearest_rows;
 use super::{FULL, Memory, Pass, State};
-use crate::constrained_slant::{self, Candidates, SlantRoot};
-use crate::ellipsoid::{self, Coefficients};
-use crate::image::{Census, Image, Window, for_each_bit};
-use crate::inliers::{Band, Inliers};
-use crate::lmeds::{MIN_PIXELS, Refit};
-use crate::mat3::{self, Mat3};
-use crate::regression::Moments;
+use crate::color::ellipsoid::{self, Coefficients};
+use crate::color::inliers::{Band, Inliers};
+use crate::color::lmeds::{MIN_PIXELS, Refit};
+use crate::color::regression::Moments;
+use crate::light::constrained_slant::{self, Candidates, SlantRoot};
+use crate::light::tilt::{TiltEstimator, Tilts, pentland};
+use crate::math::mat3::{self, Mat3};
+use crate::picture::{Image, PixelCounts, Window, for_each_bit};
 use crate::solve::{SMALLEST_NOISE_MARGIN, orient, oriented};
-use crate::tilt::{TiltEstimator, Tilts, pentland};
 use libm::{atan2, sqrt};
 
 /// What a frame says of the model from before it.
@@ -50,7 +50,7 @@ impl State {
     }
 
     pub(super) fn begin_refine(&mut self) {
-        self.census = Census::default();
+        self.pixel_counts = PixelCounts::default();
         self.moments = Moments::default();
         self.differences = pentland::Sums::default();
         self.inlier_count = 0;
@@ -69,7 +69,7 @@ impl State {
         let scale = self.scale;
         let (mut above, mut left) = (Window::new(), None);
         row.for_each_window(|window| {
-            let fitting = residual.bits(window, usable.count_window(window, &mut self.census));
+            let fitting = residual.bits(window, usable.count_window(window, &mut self.pixel_counts));
             let mut sums = Moments::default();
             if fitting != 0 {
                 for_each_bit(fitting, |i| {
@@ -92,8 +92,8 @@ impl State {
 
     #[inline(never)]
     pub(super) fn end_refine(&mut self, memory: &mut Memory) {
-        let inlier_share = f64::from(self.moments.count) / self.census.usable.max(1) as f64;
-        let enough = self.census.usable >= MIN_PIXELS && inlier_share >= self.params.smallest_share;
+        let inlier_share = f64::from(self.moments.count) / self.pixel_counts.usable.max(1) as f64;
+        let enough = self.pixel_counts.usable >= MIN_PIXELS && inlier_share >= self.params.smallest_share;
         self.history.remember(&self.differences, self.rows.step());
         self.rows.advance();
         let change = if enough { self.refine(memory.values) } else { None };
@@ -209,7 +209,7 @@ impl State {
         fit.color_deviations = refit.color_deviations;
         fit.noise_deviation = refit.noise_deviation;
         fit.degenerate_noise_deviation = refit.degenerate_noise_deviation;
-        fit.usable = self.census.usable;
+        fit.usable = self.pixel_counts.usable;
         fit.inliers = refit.count as usize;
         self.solution.inliers.residual = fit.band;
         if let Some(norms) = &mut self.solution.norm_location {
@@ -217,7 +217,7 @@ impl State {
             norms.dispersion *= dispersion;
             self.solution.inliers.norm = Band::norm(z, norms, rejection);
         }
-        self.solution.census = self.census;
+        self.solution.pixel_counts = self.pixel_counts;
         self.solution.color_deviations = refit.color_deviations;
         self.solution.inlier_count = self.inlier_count;
         Some(dispersion)

@@ -1,0 +1,72 @@
+//! Quadratic forms in (r1, r2).
+
+use crate::math::mat3::Mat3;
+
+/// A symmetric 6x6 matrix, the upper triangle row by row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Form(pub [f64; 21]);
+
+impl Form {
+    pub const ZERO: Self = Self([0.0; 21]);
+
+    /// Adds `weight v v^T`.
+    pub fn add_square(&mut self, v: &[f64; 6], weight: f64) {
+        let mut slots = self.0.iter_mut();
+        for (i, a) in v.iter().enumerate() {
+            for b in v.iter().skip(i) {
+                if let Some(slot) = slots.next() {
+                    *slot += weight * a * b;
+                }
+            }
+        }
+    }
+
+    /// Adds `weight [[xx c, xy c], [xy c, yy c]]` with a symmetric 3x3 matrix `c`.
+    pub fn add_noise(&mut self, c: &Mat3, [xx, xy, yy]: [f64; 3], weight: f64) {
+        let mut slots = self.0.iter_mut();
+        for (i, row) in c.iter().enumerate() {
+            let upper = row.iter().skip(i).map(|entry| xx * entry);
+            for term in upper.chain(row.iter().map(|entry| xy * entry)) {
+                if let Some(slot) = slots.next() {
+                    *slot += weight * term;
+                }
+            }
+        }
+        for (i, row) in c.iter().enumerate() {
+            for entry in row.iter().skip(i) {
+                if let Some(slot) = slots.next() {
+                    *slot += weight * yy * entry;
+                }
+            }
+        }
+    }
+
+    /// Adds another form.
+    pub fn add(&mut self, other: &Self) {
+        for (slot, term) in self.0.iter_mut().zip(other.0) {
+            *slot += term;
+        }
+    }
+
+    /// The value at the first two rows.
+    pub fn at(&self, rows: &Mat3) -> f64 {
+        let v = flat(rows);
+        let mut entries = self.0.iter();
+        let mut sum = 0.0;
+        for (i, a) in v.iter().enumerate() {
+            let mut line = 0.0;
+            for (j, b) in v.iter().enumerate().skip(i) {
+                let entry = entries.next().copied().unwrap_or(0.0);
+                line += if j == i { entry * b } else { 2.0 * entry * b };
+            }
+            sum += a * line;
+        }
+        sum
+    }
+}
+
+/// (r1, r2).
+pub(super) const fn flat(rows: &Mat3) -> [f64; 6] {
+    let [[a, b, c], [d, e, f], _] = *rows;
+    [a, b, c, d, e, f]
+}

@@ -1,0 +1,252 @@
+//! Normals point outward: how N changes with position, as a whole, is to be along x and y.
+//!
+//! For a sphere the slopes of n over x and y are (1, 0, 0) and (0, 1, 0) over its radius. For other closed surfaces they
+//! are so on the whole, as far as the surface is round; how far that is, the parts of the picture tell by how much each of
+//! them matters. Slopes are taken twice: by regression over all inliers, and as the mean of the gradients of small cells,
+//! which the border alone decides and which Pentland's tilts are made of. They are mixed so that the parts agree best.
+//!
+//! Where a part of the surface is shaded the rest does not face the camera as a whole: n3 then falls with the distance from
+//! the middle of all of the surface, by its curvature.
+
+use super::cells::Cells;
+use super::moments::Moments;
+use crate::math::mat3::{self, Mat3};
+use libm::sqrt;
+
+/// The picture is cut into so many parts along each side.
+pub(super) const PARTS: usize = 5;
+
+/// Parts are not independent: neighbours bulge together.
+const NEIGHBOURS: f64 = 1.5;
+
+/// Weights that are tried, of one kind of slopes against the other.
+const WEIGHTS: usize = 11;
+
+/// Parts whose normals are further from the camera than this (about 84 degrees) say nothing about slopes.
+const SMALLEST_N3: f64 = 0.1;
+
+/// Slopes of N over x and y, and the variance of their components.
+#[derive(Clone, Copy, Debug)]
+struct Slopes {
+    along: [[f64; 3]; 2],
+    variance: f64,
+}
+
+/// Slopes of both kinds.
+type Pair = [[[f64; 3]; 2]; 2];
+
+/// The length of slopes: kappa times the square root of two where they are those of a sphere.
+fn size(slopes: [[f64; 3]; 2]) -> f64 {
+    sqrt(slopes.as_flattened().iter().map(|value| value * value).sum())
+}
+
+fn normalized(slopes: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
+    let length = size(slopes);
+    slopes.map(|slope| mat3::scale(slope, if length > 0.0 { 1.0 / length } else { 0.0 }))
+}
+
+impl Slopes {
+    /// Of `whole`, what all parts say together, the first kind with this weight and the second with the rest, and the
+    /// variance of a jackknife over what they say without one of them. Slopes are of unit length and become as long as `size`.
+    fn jackknife(whole: Pair, replicates: &[Option<Pair>], weight: f64, size: f64) -> Option<Self> {
+        let used = replicates.iter().flatten().count();
+        if used < 2 {
+            return None;
+        }
+        let component = |[first, second]: &Pair, i: usize| {
+            let at = |slopes: &[[f64; 3]; 2]| slopes.as_flattened().get(i).copied().unwrap_or(0.0);
+            size * (weight * at(first) + (1.0 - weight) * at(second))
+        };
+        let (mut sum, mut along) = (0.0, [[0.0; 3]; 2]);
+        for (i, slot) in along.as_flattened_mut().iter_mut().enumerate() {
+            let values = || replicates.iter().flatten().map(|pair| component(pair, i));
+            let mean = values().sum::<f64>() / used as f64;
+            sum += values().map(|value| (value - mean) * (value - mean)).sum::<f64>();
+            *slot = component(&whole, i);
+        }
+        let variance = NEIGHBOURS * sum * (used - 1) as f64 / used as f64 / 6.0;
+        // Nothing is more certain than this.
+        Some(Self { along, variance: variance.max(1e-6 * size * size) })
+    }
+
+    /// The negative log likelihood that slopes in the frame of `rows` are kappa (1, 0, -kappa `x0`) and
+    /// kappa (0, 1, -kappa `y0`), kappa > 0: those of a sphere at that place from its middle.
+    fn cost(&self, rows: &Mat3, [x0, y0]: [f64; 2]) -> f64 {
+        let [x, y] = self.along.map(|slope| mat3::apply(rows, slope));
+        let ([a, b, c], [d, e, f]) = (x, y);
+        let kappa = (0.5 * (a + e)).max(0.0);
+        let rest = [a - kappa, b, c + kappa * kappa * x0, d, e - kappa, f + kappa * kappa * y0];
+        if self.variance > 0.0 { 0.5 * rest.iter().map(|v| v * v).sum::<f64>() / self.variance } else { 0.0 }
+    }
+}
+
+/// All that positions say.
+#[derive(Clone, Debug)]
+pub(super) struct Outward {
+    slopes: Slopes,
+    /// The sum of N.
+    normal: [f64; 3],
+    /// The mean position of the inliers from the middle of the whole surface, of which parts may be shaded.
+    from_middle: [f64; 2],
+    parts: [Part; PARTS * PARTS],
+}
+
+/// A part of the surface.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    count: f32,
+    /// Its mean position from that of all inliers.
+    position: [f32; 2],
+    /// The mean of N.
+    normal: [f32; 3],
+}
+
+/// The parts of a picture: where the inliers lie, cut into [`PARTS`] by [`PARTS`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parts {
+    /// Left and lower border.
+    pub from: [f64; 2],
+    /// Width and height.
+    pub size: [f64; 2],
+}
+
+impl Parts {
+    /// Around all cells that hold an inlier; `None` where none does.
+    pub fn around(cells: &Cells) -> Option<Self> {
+        let [[left, top], [right, bottom]] = cells.bounds()?;
+        let (from, [x1, y1]) = (cells.middle(left, bottom), cells.middle(right, top));
+        let [x0, y0] = from;
+        Some(Self { from, size: [x1 - x0 + 1.0, y1 - y0 + 1.0] })
+    }
+
+    /// The part that a position lies in.
+    pub fn of(&self, [x, y]: [f64; 2]) -> usize {
+        let ([x0, y0], [width, height]) = (self.from, self.size);
+        let index = |at: f64, from: f64, size: f64| {
+            (1..PARTS).filter(|&border| (at - from) * PARTS as f64 >= border as f64 * size).count()
+        };
+        index(y, y0, height) * PARTS + index(x, x0, width)
+    }
+
+    fn middle(&self) -> [f64; 2] {
+        let ([x0, y0], [width, height]) = (self.from, self.size);
+        [x0 + 0.5 * width, y0 + 0.5 * height]
+    }
+}
+
+impl Outward {
+    /// From cells and what lies behind them, where the mean position of the whole surface is `whole`; `None` where there
+    /// are too few.
+    pub fn of(cells: &Cells, rest: &[f32], whole: [f64; 2]) -> Option<Self> {
+        let parts = Parts::around(cells)?;
+        let [x0, y0] = parts.middle();
+        let mut moments = [Moments::default(); PARTS * PARTS];
+        let mut gradients = [[[0.0; 3]; 2]; PARTS * PARTS];
+        let [width, height] = cells.size();
+        for y in 0..height {
+            for x in 0..width {
+                let cell = cells.at(x, y);
+                let at = cells.middle(x, y);
+                let part = parts.of(at);
+                let [right, up] = at;
+                if let Some(sums) = moments.get_mut(part) {
+                    sums.add(&cell, right - x0, up - y0);
+                }
+                if let Some(sums) = gradients.get_mut(part) {
+                    let gradient = cells.gradient(x, y, rest);
+                    for (sum, value) in sums.as_flattened_mut().iter_mut().zip(gradient.as_flattened()) {
+                        *sum += value;
+                    }
+                }
+            }
+        }
+        let total = all_but(&moments, PARTS * PARTS);
+        let pair = |left_out: usize| {
+            let regression = all_but(&moments, left_out).plane()?.gradient;
+            Some([normalized(regression), normalized(sum_but(&gradients, left_out))])
+        };
+        let mut left_out = [None; PARTS * PARTS];
+        for (i, (slot, part)) in left_out.iter_mut().zip(&moments).enumerate() {
+            if part.count() > 0.0 {
+                *slot = pair(i);
+            }
+        }
+        let both = pair(PARTS * PARTS)?;
+        let size = size(total.plane()?.gradient);
+        let mut slopes: Option<Slopes> = None;
+        for i in 0..WEIGHTS {
+            let weight = i as f64 / (WEIGHTS - 1) as f64;
+            let mixed = Slopes::jackknife(both, &left_out, weight, size)?;
+            if slopes.is_none_or(|least| mixed.variance < least.variance) {
+                slopes = Some(mixed);
+            }
+        }
+        let slopes = slopes?;
+        let [n, x, y, ..] = total.position;
+        let ([x, y], [wx, wy]) = ([x / n, y / n], whole);
+        let parts = moments.map(|part| {
+            let [n, right, up, ..] = part.position;
+            Part {
+                count: n as f32,
+                position: [right / n - x, up / n - y].map(|mean| mean as f32),
+                normal: part.normal.map(|sum| (sum / n) as f32),
+            }
+        });
+        Some(Self { slopes, normal: total.normal, from_middle: [x0 + x - wx, y0 + y - wy], parts })
+    }
+
+    /// The negative log likelihood of `rows`.
+    pub fn cost(&self, rows: &Mat3) -> f64 {
+        let rows = &self.facing(*rows);
+        self.slopes.cost(rows, self.from_middle)
+    }
+
+    /// `rows` with the sign of r3 that lets the surface face the camera.
+    pub fn facing(&self, [r1, r2, r3]: Mat3) -> Mat3 {
+        [r1, r2, if mat3::dot(r3, self.normal) < 0.0 { mat3::scale(r3, -1.0) } else { r3 }]
+    }
+
+    /// `rows` or their twin, whichever makes of the surface a dome rather than a hollow: the sum over its parts of
+    /// `(x n1 + y n2) / n3` is positive. And that sum over the sum of its absolute terms, from 0 to 1.
+    pub fn convex(&self, rows: Mat3) -> (Mat3, f64) {
+        let [r1, r2, r3] = rows;
+        let (mut sum, mut absolute) = (0.0, 0.0);
+        for part in self.parts.iter().filter(|part| part.count > 0.0) {
+            let ([x, y], normal) = (part.position.map(f64::from), part.normal.map(f64::from));
+            let n3 = mat3::dot(r3, normal);
+            if n3 > SMALLEST_N3 {
+                let outward = (x * mat3::dot(r1, normal) + y * mat3::dot(r2, normal)) / n3;
+                sum += f64::from(part.count) * outward;
+                absolute += f64::from(part.count) * outward.abs();
+            }
+        }
+        let convexity = if absolute > 0.0 { sum / absolute } else { 0.0 };
+        if convexity < 0.0 {
+            ([mat3::scale(r1, -1.0), mat3::scale(r2, -1.0), r3], -convexity)
+        } else {
+            (rows, convexity)
+        }
+    }
+}
+
+/// The sums over all parts but one.
+fn all_but(parts: &[Moments], left_out: usize) -> Moments {
+    let mut total = Moments::default();
+    for (i, part) in parts.iter().enumerate() {
+        if i != left_out {
+            total.add(part, 0.0, 0.0);
+        }
+    }
+    total
+}
+
+/// The same of gradients.
+fn sum_but(parts: &[[[f64; 3]; 2]], left_out: usize) -> [[f64; 3]; 2] {
+    let mut total = [[0.0; 3]; 2];
+    for (_, sums) in parts.iter().enumerate().filter(|(i, _)| *i != left_out) {
+        for (entry, sum) in total.as_flattened_mut().iter_mut().zip(sums.as_flattened()) {
+            *entry += sum;
+        }
+    }
+    total
+}

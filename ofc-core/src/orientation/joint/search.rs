@@ -1,0 +1,109 @@
+//! Minima over rotations.
+
+use super::APART;
+use crate::math::mat3::{self, Mat3};
+use crate::orientation::orthogonal::polish::{polish, rotation};
+use libm::acos;
+
+/// Rotations that every search starts from: 60, spread over all of them, after two of the caller's own.
+const STARTS: usize = 62;
+
+/// Starts that are followed to their minimum.
+const FOLLOWED: usize = 8;
+
+/// Times that each of them may compute the cost.
+const EVALUATIONS: u32 = 240;
+
+/// The best minimum, and how much higher the next one is that lies elsewhere.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Minimum {
+    pub rows: Mat3,
+    pub second: f64,
+}
+
+/// A frame about the line of sight and tipped from it.
+#[inline(never)]
+fn start(i: usize) -> Mat3 {
+    let (turn, rest) = ((i % 5) as f64, i / 5);
+    let (tip, toward) = ((rest % 3) as f64, (rest / 3) as f64);
+    let about = rotation([0.0, 0.0, 1.256 * turn]);
+    let tipped = rotation([0.7 * tip, 0.0, 0.0]);
+    let direction = rotation([0.0, 0.0, 1.57 * toward + 0.3 * tip]);
+    mat3::multiply(&mat3::multiply(&about, &tipped), &direction)
+}
+
+/// The least cost that the most promising starts lead to, the two given ones among them.
+#[inline(never)]
+pub(super) fn minimum(own: [&Mat3; 2], cost: impl Fn(&Mat3) -> f64) -> Minimum {
+    let mut promising = [(f64::INFINITY, mat3::IDENTITY); FOLLOWED];
+    for i in 0..STARTS {
+        let start = own.get(i).map_or_else(|| start(i), |own| **own);
+        let mut entry = (cost(&start), start);
+        for slot in &mut promising {
+            if entry.0 < slot.0 {
+                core::mem::swap(slot, &mut entry);
+            }
+        }
+    }
+    let mut best = (f64::INFINITY, mat3::IDENTITY);
+    for found in &mut promising {
+        let (from, start) = *found;
+        let (rows, _) = polish(start, from, EVALUATIONS, &cost);
+        *found = (cost(&rows), rows);
+        if found.0 < best.0 {
+            best = *found;
+        }
+    }
+    let elsewhere =
+        promising.iter().filter(|(_, rows)| angle(rows, &best.1) > APART).map(|(value, _)| value - best.0);
+    Minimum { rows: best.1, second: elsewhere.fold(f64::INFINITY, f64::min) }
+}
+
+/// The angle between two frames; twins, whose first rows have the other sign, are the same.
+fn angle(a: &Mat3, b: &Mat3) -> f64 {
+    let [x, y, z] = [0, 1, 2].map(|i| {
+        let row = |m: &Mat3| m.get(i).copied().unwrap_or_default();
+        mat3::dot(row(a), row(b))
+    });
+    let trace = (z + x + y).max(z - x - y);
+    acos((0.5 * (trace - 1.0)).clamp(-1.0, 1.0))
+}
+
+/// The rotation vector, in the frame of the rows, that leads from `a` to `b` or its twin, as far as it is small.
+pub(super) fn turn(a: &Mat3, b: &Mat3) -> [f64; 3] {
+    let [a1, a2, a3] = *a;
+    let [b1, b2, b3] = *b;
+    let sign = if mat3::dot(a1, b1) + mat3::dot(a2, b2) < 0.0 { -1.0 } else { 1.0 };
+    let [x, y, z] = [
+        mat3::dot(a2, b3) - sign * mat3::dot(a3, b2),
+        sign * mat3::dot(a3, b1) - mat3::dot(a1, b3),
+        sign * (mat3::dot(a1, b2) - mat3::dot(a2, b1)),
+    ];
+    mat3::scale([x, y, z], 0.5)
+}
+
+/// Second derivatives over small rotations in the frame of the rows: rows -> (1 + [w]) rows.
+pub(super) fn hessian(rows: &Mat3, cost: impl Fn(&Mat3) -> f64) -> Mat3 {
+    derivatives(rows, cost).1
+}
+
+/// First and second derivatives.
+#[inline(never)]
+pub(super) fn derivatives(rows: &Mat3, cost: impl Fn(&Mat3) -> f64) -> ([f64; 3], Mat3) {
+    /// The angle of the differences.
+    const STEP: f64 = 2e-3;
+    let at = |turn: [f64; 3]| cost(&mat3::multiply(&rotation(turn), rows));
+    let here = cost(rows);
+    let axes = [[STEP, 0.0, 0.0], [0.0, STEP, 0.0], [0.0, 0.0, STEP]];
+    let plus = axes.map(at);
+    let minus = axes.map(|axis| at(mat3::scale(axis, -1.0)));
+    let [p1, p2, p3] = plus;
+    let [m1, m2, m3] = minus;
+    let p12 = at([STEP, STEP, 0.0]) - p1 - p2 + here;
+    let p13 = at([STEP, 0.0, STEP]) - p1 - p3 + here;
+    let p23 = at([0.0, STEP, STEP]) - p2 - p3 + here;
+    let own = |p: f64, m: f64| p + m - 2.0 * here;
+    let second = [[own(p1, m1), p12, p13], [p12, own(p2, m2), p23], [p13, p23, own(p3, m3)]];
+    let gradient = [p1 - m1, p2 - m2, p3 - m3].map(|difference| difference / (2.0 * STEP));
+    (gradient, second.map(|row| row.map(|entry| entry / (STEP * STEP))))
+}

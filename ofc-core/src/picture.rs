@@ -1,0 +1,24 @@
+//! Views over the caller's pixels: how they lie in memory, which of them a method may use, and how neighbours differ.
+
+pub mod cells;
+pub mod differences;
+mod faces;
+pub mod flat_field;
+mod image;
+mod layout;
+mod mask;
+mod pixels;
+mod usable;
+mod window;
+
+pub use faces::{Face, Faces, MAX_FACES};
+pub use image::Image;
+pub use layout::{ImageError, MAX_PIXELS, Order, Sample, span};
+pub use mask::Mask;
+pub use pixels::Pixels;
+pub use usable::{PixelCounts, Usable};
+pub use window::{WINDOW, Window, for_each_bit};
+
+pub(crate) use faces::distance;
+pub(crate) use pixels::{second_differences, sum_second_differences};
+pub(crate) use window::first_bits;

@@ -1,0 +1,184 @@
+//! Views over the caller's pixels: checked once when made, then safe to read.
+//!
+//! Every layout is three strided channels over bytes: interleaved formats are planes whose pixels lie further apart,
+//! and BGR differs from RGB only in where its channels begin. Pixels may have any alignment; u16 and f32 are in the
+//! machine's byte order.
+
+use super::layout::{ImageError, Order, Sample, span};
+use super::mask::Mask;
+use super::pixels::Pixels;
+use super::window::{WINDOW, Window, first_bits};
+
+/// A picture: three channels r, g, b over borrowed bytes, and an optional mask.
+///
+/// # Shape
+/// `width` x `height`, row 0 at the top.
+#[derive(Clone, Copy, Debug)]
+pub struct Image<'a> {
+    channels: [&'a [u8]; 3],
+    sample: Sample,
+    pixel_stride: usize,
+    row_stride: usize,
+    width: usize,
+    height: usize,
+    mask: Option<Mask<'a>>,
+}
+
+impl<'a> Image<'a> {
+    /// A view of interleaved pixels, rows `row_stride` bytes apart.
+    ///
+    /// # Errors
+    /// As [`span`], and [`ImageError::TooShort`] when `bytes` ends before the last pixel.
+    pub fn interleaved(
+        bytes: &'a [u8],
+        width: usize,
+        height: usize,
+        row_stride: usize,
+        sample: Sample,
+        order: Order,
+    ) -> Result<Self, ImageError> {
+        let pixel_stride = order.samples() * sample.bytes();
+        let need = span(width, height, pixel_stride, row_stride)?;
+        let bytes = bytes.get(..need).ok_or(ImageError::TooShort)?;
+        let channels = order.positions().map(|p| bytes.get(p * sample.bytes()..).unwrap_or_default());
+        Ok(Self { channels, sample, pixel_stride, row_stride, width, height, mask: None })
+    }
+
+    /// A view of three separate planes r, g, b with one row stride, such as three grayscale photographs under three
+    /// lights.
+    ///
+    /// # Errors
+    /// As [`span`], and [`ImageError::TooShort`] when a plane ends before its last pixel.
+    pub fn planes(
+        planes: [&'a [u8]; 3],
+        width: usize,
+        height: usize,
+        row_stride: usize,
+        sample: Sample,
+    ) -> Result<Self, ImageError> {
+        let need = span(width, height, sample.bytes(), row_stride)?;
+        if planes.iter().any(|plane| plane.len() < need) {
+            return Err(ImageError::TooShort);
+        }
+        let pixel_stride = sample.bytes();
+        Ok(Self { channels: planes, sample, pixel_stride, row_stride, width, height, mask: None })
+    }
+
+    /// The same picture restricted to the pixels where `mask`, tightly packed or strided, is not zero.
+    ///
+    /// # Errors
+    /// As [`Mask::new`].
+    pub fn with_mask(self, bytes: &'a [u8], row_stride: usize) -> Result<Self, ImageError> {
+        Ok(Self { mask: Some(Mask::new(bytes, self.width, self.height, row_stride)?), ..self })
+    }
+
+    /// Pixels in a row.
+    #[must_use]
+    pub const fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    #[must_use]
+    pub const fn height(&self) -> usize {
+        self.height
+    }
+
+    /// How samples are stored.
+    #[must_use]
+    pub const fn sample(&self) -> Sample {
+        self.sample
+    }
+
+    /// Row `y` alone, with its mask, as a picture of height 1; `None` below the last row.
+    #[must_use]
+    pub fn row(&self, y: usize) -> Option<Self> {
+        if y >= self.height {
+            return None;
+        }
+        let start = y * self.row_stride;
+        let channels = self.channels.map(|channel| channel.get(start..).unwrap_or_default());
+        let mask = self.mask.map(|mask| Mask {
+            bytes: mask.bytes.get(y * mask.row_stride..).unwrap_or_default(),
+            row_stride: mask.row_stride,
+        });
+        Some(Self { channels, height: 1, mask, ..*self })
+    }
+
+    /// Reads up to [`WINDOW`] pixels of row `y` from column `x` on, fewer at the end of the row and none beyond the
+    /// picture.
+    pub fn read(&self, x: usize, y: usize, window: &mut Window) {
+        let len = if y < self.height { self.width.saturating_sub(x).min(WINDOW) } else { 0 };
+        window.x = x;
+        window.y = y;
+        window.len = len;
+        window.masked = first_bits(len);
+        if len == 0 {
+            return;
+        }
+        if let Some(mask) = &self.mask {
+            window.masked &= mask.bits(x, y, len);
+        }
+        let start = y * self.row_stride + x * self.pixel_stride;
+        for (channel, out) in self.channels.iter().zip(&mut window.color) {
+            let bytes = channel.get(start..).unwrap_or_default();
+            let out = out.get_mut(..len).unwrap_or_default();
+            match (self.sample, self.pixel_stride) {
+                (Sample::U8, 3) => read_bytes::<3>(bytes, out),
+                (Sample::U8, 4) => read_bytes::<4>(bytes, out),
+                (Sample::U8, _) => read_bytes::<1>(bytes, out),
+                (Sample::U16, _) => {
+                    read_samples(bytes, self.pixel_stride, out, |b| f32::from(u16::from_ne_bytes(b)));
+                }
+                (Sample::F32, _) => read_samples(bytes, self.pixel_stride, out, f32::from_ne_bytes),
+            }
+        }
+    }
+
+    /// Calls `visit` with the whole picture, [`WINDOW`] pixels at a time, top row first.
+    pub fn for_each_window(&self, mut visit: impl FnMut(&Window)) {
+        let mut window = Window::new();
+        for y in 0..self.height {
+            for x in (0..self.width).step_by(WINDOW) {
+                self.read(x, y, &mut window);
+                visit(&window);
+            }
+        }
+    }
+}
+
+impl Pixels for Image<'_> {
+    fn for_each_window(&self, visit: impl FnMut(&Window)) {
+        self.for_each_window(visit);
+    }
+
+    fn sample(&self) -> Sample {
+        self.sample
+    }
+
+    fn len(&self) -> usize {
+        self.width * self.height
+    }
+}
+
+/// Every `STRIDE`th byte, as many as `out` holds.
+fn read_bytes<const STRIDE: usize>(bytes: &[u8], out: &mut [f32]) {
+    let (pixels, last) = bytes.as_chunks::<STRIDE>();
+    for (pixel, out) in pixels.iter().zip(out.iter_mut()) {
+        if let Some(&sample) = pixel.first() {
+            *out = f32::from(sample);
+        }
+    }
+    if let (Some(&sample), Some(out)) = (last.first(), out.get_mut(pixels.len())) {
+        *out = f32::from(sample);
+    }
+}
+
+/// Every `stride` bytes one sample, as many as `out` holds.
+fn read_samples<const N: usize>(bytes: &[u8], stride: usize, out: &mut [f32], load: impl Fn([u8; N]) -> f32) {
+    for (pixel, out) in bytes.chunks(stride.max(1)).zip(out) {
+        if let Some(&sample) = pixel.first_chunk::<N>() {
+            *out = load(sample);
+        }
+    }
+}

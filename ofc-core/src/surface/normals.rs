@@ -1,0 +1,70 @@
+//! Normals from colors, n = F^-1 rho.
+//!
+//! # Reference
+//! Section 2.1, eq. 8, and section 3.4, step 7.
+
+use crate::math::mat3::{self, Mat3};
+use crate::picture::{Image, Window, for_each_bit};
+use libm::sqrt;
+
+/// What becomes of a normal's length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Length {
+    /// As the color gives it: near 1 where the model holds.
+    Kept,
+    /// Set to 1.
+    Unit,
+}
+
+/// The output buffer ends before the last row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooShort;
+
+/// Writes the normal of every inlier and zeros everywhere else.
+///
+/// # Shape
+/// `normals` is height rows of width times (x, y, z), rows `row_stride` `f32` apart, row 0 at the top; what lies between
+/// rows is left alone. Frame: x right, y up, z toward the camera.
+///
+/// # Errors
+/// [`TooShort`], also when a row stride is smaller than a row.
+pub fn compute(
+    image: &Image,
+    inliers: impl Fn(&Window) -> u64,
+    f_inverse: &Mat3,
+    length: Length,
+    normals: &mut [f32],
+    row_stride: usize,
+) -> Result<(), TooShort> {
+    let row_len = image.width() * 3;
+    let need =
+        row_stride.checked_mul(image.height() - 1).and_then(|n| n.checked_add(row_len)).ok_or(TooShort)?;
+    if row_stride < row_len || normals.len() < need {
+        return Err(TooShort);
+    }
+    image.for_each_window(|window| {
+        let start = window.y * row_stride + window.x * 3;
+        let out = normals.get_mut(start..start + window.len * 3).unwrap_or_default();
+        out.fill(0.0);
+        let (out, _) = out.as_chunks_mut::<3>();
+        for_each_bit(inliers(window), |i| {
+            if let Some(slot) = out.get_mut(i) {
+                *slot = normal(f_inverse, window.pixel(i), length).map(|component| component as f32);
+            }
+        });
+    });
+    Ok(())
+}
+
+/// The normal of one color.
+#[must_use]
+#[inline]
+pub fn normal(f_inverse: &Mat3, color: [f32; 3], length: Length) -> [f64; 3] {
+    let [x, y, z] = mat3::apply(f_inverse, color.map(f64::from));
+    let factor = match length {
+        Length::Kept => 1.0,
+        // Of no color nothing comes: zero times the largest factor there is.
+        Length::Unit => 1.0 / sqrt((x * x + y * y + z * z).max(f64::MIN_POSITIVE)),
+    };
+    [x * factor, y * factor, z * factor]
+}

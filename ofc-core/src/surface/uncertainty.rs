@@ -1,0 +1,134 @@
+//! How sure F and every normal are.
+//!
+//! With n = G rho, G = F^-1, and G^T G = C, an error dC of C and a small rotation w change G by T G, to first order, with
+//! `T = F^T dC F / 2 + [w]x`: the symmetric part is all that C can say (G^T G alone is known), the other part all that it
+//! cannot (though the first turns the best rotation as well, see [`of_turn`]). So the covariance of T follows from those
+//! of C ([`Fit::covariance`]) and of the rotation ([`Joint::covariance`]), that of F from dF = -F T, and that of a normal
+//! from dn = T n + G d rho, d rho being noise of equal deviation in every channel ([`Fit::pixel_noise`], which holds what
+//! rounding adds).
+//!
+//! # The 1-sigma angle
+//! That below which 68.3 % of the errors are expected to lie, as people expect of one sigma; 95.4 to 99.0 % then lie below
+//! twice and 99.7 to 100.0 % below three times the angle ([`one_sigma`]). Errors of C and of the rotation are shared by
+//! all pixels of a picture: shares of one picture may be far from these, those of many pictures are not.
+//!
+//! What is not in it: pixels that do not obey the model and are inliers all the same (the edge of a shadow), the choice
+//! between a surface and its twin ([`Joint::convexity`]), and orientations far from the best one ([`Joint::second_best`]).
+//!
+//! [`Fit::covariance`]: crate::color::lmeds::Fit::covariance
+//! [`Fit::pixel_noise`]: crate::color::lmeds::Fit::pixel_noise
+//! [`Joint::covariance`]: crate::orientation::joint::Joint::covariance
+//! [`Joint::convexity`]: crate::orientation::joint::Joint::convexity
+//! [`Joint::second_best`]: crate::orientation::joint::Joint::second_best
+
+mod angle;
+mod propagate;
+
+pub use angle::one_sigma;
+pub use propagate::{Covariance9, of_f, of_f_inverse, of_turn};
+
+use crate::color::regression::Triangle;
+use crate::math::mat3::{self, Mat3};
+use crate::picture::{Image, Window, for_each_bit};
+use crate::surface::normals::TooShort;
+use core::f64::consts::PI;
+use libm::sqrt;
+
+/// What the uncertainty of normals comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sources {
+    /// F, in pixel values.
+    pub f: Mat3,
+    /// Its inverse.
+    pub f_inverse: Mat3,
+    /// Expected squares and products of the errors of the coefficients of C.
+    pub c: Triangle,
+    /// Covariance of the rotation, in the frame of n, radians squared.
+    pub rotation: Mat3,
+    /// Noise in each channel, as a standard deviation in pixel values.
+    pub noise: f64,
+}
+
+/// Covariances of normals, ready for many of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uncertainty {
+    f_inverse: Mat3,
+    /// Of noise alone, for a normal of length 1.
+    noise: Mat3,
+    /// The six entries (xx, yy, zz, xy, xz, yz) of the covariance of T n, each as coefficients of the monomials (xx, yy, zz, xy,
+    /// xz, yz) of n.
+    model: [[f64; 6]; 6],
+}
+
+impl Uncertainty {
+    /// From what it comes from.
+    #[must_use]
+    #[inline(never)]
+    pub fn new(sources: &Sources) -> Self {
+        let Sources { f, f_inverse, c, rotation, noise } = sources;
+        let variance = noise * noise;
+        Self {
+            f_inverse: *f_inverse,
+            noise: mat3::multiply(f_inverse, &mat3::transpose(f_inverse))
+                .map(|row| mat3::scale(row, variance)),
+            model: propagate::forms(&of_turn(f, c, rotation)),
+        }
+    }
+
+    /// The 1-sigma angle of the normal of a color, in radians, at most pi; pi for black, which has no normal.
+    #[must_use]
+    #[inline]
+    pub fn angle(&self, color: [f32; 3]) -> f64 {
+        let n = mat3::apply(&self.f_inverse, color.map(f64::from));
+        let square = mat3::dot(n, n);
+        if !(square > 0.0 && square.is_finite()) {
+            return PI;
+        }
+        let n = mat3::scale(n, 1.0 / sqrt(square));
+        let [x, y, z] = n;
+        let monomials = [x * x, y * y, z * z, x * y, x * z, y * z];
+        let [xx, yy, zz, xy, xz, yz] = self
+            .model
+            .each_ref()
+            .map(|form| form.iter().zip(monomials).fold(0.0, |sum, (entry, term)| sum + entry * term));
+        let mut covariance = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+        for (row, noise) in covariance.iter_mut().zip(&self.noise) {
+            for (entry, noise) in row.iter_mut().zip(noise) {
+                *entry += noise / square;
+            }
+        }
+        one_sigma(&covariance, n).min(PI)
+    }
+
+    /// Writes the 1-sigma angle of every inlier's normal, in radians, and pi everywhere else: there is no normal there.
+    ///
+    /// # Shape
+    /// `angles` is height rows of width, rows `row_stride` `f32` apart, row 0 at the top; what lies between rows is left alone.
+    ///
+    /// # Errors
+    /// [`TooShort`], also when a row stride is smaller than a row.
+    pub fn compute(
+        &self,
+        image: &Image,
+        inliers: impl Fn(&Window) -> u64,
+        angles: &mut [f32],
+        row_stride: usize,
+    ) -> Result<(), TooShort> {
+        let rows = row_stride.checked_mul(image.height() - 1);
+        let need = rows.and_then(|n| n.checked_add(image.width())).ok_or(TooShort)?;
+        if row_stride < image.width() || angles.len() < need {
+            return Err(TooShort);
+        }
+        image.for_each_window(|window| {
+            let start = window.y * row_stride + window.x;
+            let out = angles.get_mut(start..start + window.len).unwrap_or_default();
+            out.fill(PI as f32);
+            for_each_bit(inliers(window), |i| {
+                if let Some(slot) = out.get_mut(i) {
+                    *slot = self.angle(window.pixel(i)) as f32;
+                }
+            });
+        });
+        Ok(())
+    }
+}
