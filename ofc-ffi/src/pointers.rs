@@ -8,6 +8,7 @@ use crate::status::{
     OFC_STATUS_WORKSPACE_TOO_SMALL, ofc_status,
 };
 use core::slice;
+use ofc_core::math::arena::{Arena, Need};
 
 /// The alignment in bytes that every workspace must have; what malloc returns has it.
 pub const OFC_WORKSPACE_ALIGNMENT: usize = 8;
@@ -126,6 +127,25 @@ pub fn workspace(pointer: *mut f64, bytes: usize, need: usize) -> Result<Extent,
         return Err(OFC_STATUS_WORKSPACE_TOO_SMALL);
     }
     Ok(Extent { bytes: need, ..aligned })
+}
+
+/// The caller's workspace as typed slices, in the order of [`Need::bytes`].
+///
+/// # Safety
+/// [`workspace`] has been asked for the same pointer and for `need.bytes()`, and its bytes are [`disjoint`] from everything
+/// else in the call.
+#[expect(dead_code, reason = "stages take it one after the other")]
+pub unsafe fn arena<'a>(pointer: *mut f64, need: Need) -> Arena<'a> {
+    let Need { doubles, singles, integers } = need;
+    // SAFETY: that many bytes are there; doubles come first, and what follows has half of their alignment.
+    unsafe {
+        let first = pointer.add(doubles).cast::<f32>();
+        Arena::new(
+            output_slice(pointer, doubles),
+            output_slice(first, singles),
+            output_slice(first.add(singles).cast::<u32>(), integers),
+        )
+    }
 }
 
 /// A struct or array that the call writes at its very end, on success.
