@@ -86,6 +86,7 @@ impl<'w> Arena<'w> {
     }
 }
 
+#[expect(clippy::mut_mut, reason = "what is left goes back to where it came from")]
 fn cut<'w, T>(rest: &mut &'w mut [T], count: usize) -> Option<&'w mut [T]> {
     rest.split_off_mut(..count)
 }
