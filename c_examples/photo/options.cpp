@@ -24,8 +24,8 @@ Options parse_options(int argc, char **argv)
     app.add_option("--truth", options.truth, "True normals to compare with: TIFF of 3 x float32, x right, y up, z out")
         ->type_name("NORMALS.tiff");
     std::string fit = "median", report = "short", orientation = "joint";
-    app.add_option("--orientation", orientation_method, "How F is oriented: all evidence together, or the paper's slants from tilts (default: joint)")
-        ->check(CLI::IsMember({"joint", "paper"}));
+    app.add_option("--orientation", orientation, "How F is oriented: by the joint method, or by the direct method of the paper (default: joint)")
+        ->check(CLI::IsMember({"joint", "direct"}));
     app.add_option("--fit", fit, "How C is fitted: least median of squares, or least squares over every pixel (default: median)")
         ->check(CLI::IsMember({"median", "squares"}));
     app.add_flag("--save-planes", options.save_planes, "Write the channels as three gray pictures, as --planes takes them");
