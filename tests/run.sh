@@ -1,13 +1,28 @@
 #!/usr/bin/env bash
-# All tests. Installs the Debian packages it lacks (.ci/packages.sh names them) as root or with sudo. Can be run again.
+# All tests, and how long each kind of them took. run.sh --fast leaves out the emulated boards, the other targets and the
+# examples. Installs the Debian packages it lacks (.ci/packages.sh names them) as root or with sudo. Can be run again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+case ${1-} in
+'') fast= ;;
+--fast) fast=yes ;;
+*)
+    echo "usage: tests/run.sh [--fast]" >&2
+    exit 2
+    ;;
+esac
 # shellcheck source-path=SCRIPTDIR source=../.ci/packages.sh
 . .ci/packages.sh
 install_packages "${example_packages[@]}" "${test_packages[@]}"
 need_cargo
 
-step() { printf '\n== %s\n' "$*"; }
+name=
+# step NAME: says how long the step before took, and what comes next; ends the last one without a name.
+step() {
+    [ -z "$name" ] || printf '   %s took %d s\n' "$name" $((SECONDS - began))
+    name=${1-} began=$SECONDS
+    [ -z "$name" ] || printf '\n== %s\n' "$name"
+}
 
 step "scripts"
 shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/determinism/*.sh
@@ -26,6 +41,12 @@ cmake -S tests -B target/ctest >target/ctest.log
 cmake --build target/ctest --parallel 2 >>target/ctest.log || { cat target/ctest.log >&2; exit 1; }
 ctest --test-dir target/ctest --output-on-failure
 
+if [ -n "$fast" ]; then
+    step
+    echo "the fast tests passed in $SECONDS s; firmware, other targets and examples were left out"
+    exit
+fi
+
 step "firmware"
 ./c_examples/firmware/run.sh
 
@@ -35,4 +56,5 @@ step "the same bits on every target"
 step "examples"
 ./tests/examples.sh
 
-step "all tests passed"
+step
+printf '\nall tests passed in %d s\n' "$SECONDS"
