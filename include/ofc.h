@@ -73,7 +73,7 @@
 #define OFC_STREAM_SIZE(width, height) OFC_STREAM_SIZE_FOR(width, height, 2048)
 #define OFC_STREAM_SIZE_FOR(width, height, sample_size)                                                       \
     ((4103 + OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) +                 \
-      OFC_SIZE_OF_LARGER((size_t)5184, OFC_SIZE_OF_LARGER((size_t)(width) * 36 +                              \
+      OFC_SIZE_OF_LARGER((size_t)(width) * 12 + 3456, OFC_SIZE_OF_LARGER((size_t)(width) * 36 +                              \
           OFC_SIZE_OF_SMALLER((size_t)(width) / 4 * ((size_t)(height) / 4), (size_t)192) * 116,               \
           OFC_SIZE_OF_SMALLER((size_t)(width) * (size_t)(height), (size_t)(sample_size)) * 20))) / 8 * 8)
 #define OFC_SIZE_OF_LARGER(a, b) ((a) > (b) ? (a) : (b))
@@ -1820,9 +1820,9 @@ const char *ofc_status_message(ofc_status status);
 // @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 ofc_status ofc_stream_params_default(struct ofc_stream_params *params);
 
-// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 5184 or what rows
-// take are more than 20 for each color. Rows take 12 for each pixel of a row with OFC_ORIENTATION_DIRECT, and with OFC_ORIENTATION_JOINT 36
-// and 116 for each of 192 cells. OFC_STREAM_SIZE(width, height) is no less for the default parameters, for
+// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where what rows take is more
+// than 20 for each color. Rows take 3456 and 12 for each pixel of a row, or with OFC_ORIENTATION_JOINT 36 for each pixel of a
+// row and 116 for each of 192 cells where that is more. OFC_STREAM_SIZE(width, height) is no less for the default parameters, for
 // static buffers: 47,104 bytes at 320 x 240.
 //
 // @return The size, or 0 when an argument is invalid.

@@ -25,8 +25,9 @@ pub use warm::{Change, Drift};
 
 use crate::color::lmeds::{self, FitError, MIN_PIXELS};
 use crate::color::regression::Moments;
-use crate::light::constrained_slant::{MAX_CANDIDATES, ROOM};
+use crate::light::constrained_slant::{MAX_CANDIDATES, WORKSPACE_LEN};
 use crate::light::tilt::{TiltEstimator, pentland};
+use crate::math::arena::Need;
 use crate::math::mat3::Mat3;
 use crate::orientation::integrability;
 use crate::orientation::joint::{self, CellSums, STRIP, WindowSums};
@@ -119,7 +120,7 @@ pub enum StreamError {
     Fit(FitError),
 }
 
-/// How many `f32` [`Memory::values`] needs.
+/// How many `f32` [`Memory::values`] needs for all passes.
 #[must_use]
 pub const fn values_len(
     width: usize,
@@ -129,11 +130,34 @@ pub const fn values_len(
 ) -> usize {
     let sample = room(width, height, sample_size).saturating_mul(5);
     let rows = match orientation_method {
-        OrientationMethod::Direct => width.saturating_mul(3),
+        OrientationMethod::Direct => row_len(width),
         OrientationMethod::Joint => rows_len(width).saturating_add(joint::least_room(width, height)),
     };
-    let larger = if sample > rows { sample } else { rows };
-    if larger > ROOM { larger } else { ROOM }
+    if sample > rows { sample } else { rows }
+}
+
+/// Bytes for [`Memory::boxes`] and [`Memory::values`] of the pass that takes most, for callers who give every frame the same
+/// memory, cut as [`State::need`] says. No number lives on from one pass to the next but in passes without boxes.
+#[must_use]
+pub const fn shared_bytes(
+    width: usize,
+    height: usize,
+    sample_size: u32,
+    orientation_method: OrientationMethod,
+) -> usize {
+    let values = Need::of_singles(values_len(width, height, sample_size, orientation_method)).bytes();
+    let boxes = need_of_slants(width).bytes();
+    if values > boxes { values } else { boxes }
+}
+
+/// What a pass takes that ends with slants: a list of boxes and the row before.
+const fn need_of_slants(width: usize) -> Need {
+    Need { doubles: WORKSPACE_LEN, singles: row_len(width), integers: 0 }
+}
+
+/// How many `f32` the row before is.
+const fn row_len(width: usize) -> usize {
+    width.saturating_mul(3)
 }
 
 /// How many `f32` the rows above a strip's last one are.
@@ -156,8 +180,10 @@ const fn room(width: usize, height: usize, sample_size: u32) -> usize {
 /// The caller's buffers, which belong to the stream from one call to the next. What they hold at first does not matter.
 #[derive(Debug)]
 pub struct Memory<'m> {
-    /// [`values_len`] numbers: the sample and its residuals, then the row before and boxes of slants, or cells and the rows
-    /// before.
+    /// [`WORKSPACE_LEN`] numbers in the passes over tilts and those that refine, none in others: boxes of slants.
+    pub boxes: &'m mut [f64],
+    /// [`values_len`] numbers: the sample and its residuals, then the row before, or cells and the rows before. A caller who
+    /// cuts the memory anew for every pass gives as many as [`State::need`] says.
     pub values: &'m mut [f32],
     /// [`places_len`] bytes: where in the frame the sample is from.
     pub places: &'m mut [u8],
@@ -274,6 +300,22 @@ impl State {
         &self.solution
     }
 
+    /// How many numbers the pass in progress, or the next one, takes: doubles are [`Memory::boxes`], singles
+    /// [`Memory::values`].
+    #[must_use]
+    pub const fn need(&self) -> Need {
+        let params = &self.params.solve;
+        match self.pass {
+            Pass::Tilts | Pass::Refine => need_of_slants(self.width),
+            _ => Need::of_singles(values_len(
+                self.width,
+                self.height,
+                params.lmeds.sample_size,
+                params.orientation_method,
+            )),
+        }
+    }
+
     fn usable(&self) -> Usable {
         self.solution.inliers.usable
     }
@@ -288,14 +330,23 @@ pub struct Stream<'m> {
 
 impl<'m> Stream<'m> {
     /// # Errors
-    /// [`StreamError::TooShort`].
+    /// [`StreamError::TooShort`] where the memory does not hold what the pass takes that the state is in.
     pub fn new(state: &'m mut State, memory: Memory<'m>) -> Result<Self, StreamError> {
         let (width, height, sample_size) = (state.width, state.height, state.params.solve.lmeds.sample_size);
-        let Memory { values, places } = memory;
+        let Memory { boxes, values, places } = memory;
+        // More than is needed must not change the answer.
         let len = values_len(width, height, sample_size, state.params.solve.orientation_method);
-        let values = values.get_mut(..len).ok_or(StreamError::TooShort)?;
+        let values = values.get_mut(..len.min(values.len())).ok_or(StreamError::TooShort)?;
         let places = places.get_mut(..places_len(width, height, sample_size)).ok_or(StreamError::TooShort)?;
-        Ok(Self { state, memory: Memory { values, places } })
+        let stream = Self { state, memory: Memory { boxes, values, places } };
+        stream.check_memory().map(|()| stream)
+    }
+
+    /// Whether the memory holds what the pass takes that the state is in.
+    const fn check_memory(&self) -> Result<(), StreamError> {
+        let Need { doubles, singles, .. } = self.state.need();
+        let holds = self.memory.boxes.len() >= doubles && self.memory.values.len() >= singles;
+        if holds { Ok(()) } else { Err(StreamError::TooShort) }
     }
 
     /// The state.
@@ -312,7 +363,11 @@ impl<'m> Stream<'m> {
     }
 
     /// Begins a frame, and says what for. One that was not ended is forgotten.
-    pub fn begin(&mut self) -> Pass {
+    ///
+    /// # Errors
+    /// [`StreamError::TooShort`] where the stream was made with the memory of another pass.
+    pub fn begin(&mut self) -> Result<Pass, StreamError> {
+        self.check_memory()?;
         let state = &mut *self.state;
         match state.pass {
             Pass::Colors => state.begin_colors(),
@@ -324,7 +379,7 @@ impl<'m> Stream<'m> {
             Pass::Refine => state.begin_refine(),
         }
         state.row = Some(0);
-        state.pass
+        Ok(state.pass)
     }
 
     /// Takes row `y` of the frame, a picture of height 1 that may have a mask.

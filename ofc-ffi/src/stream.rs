@@ -13,6 +13,7 @@ use crate::status::{
     of_stream_error, ofc_status,
 };
 use core::ffi::c_void;
+use ofc_core::math::arena::Need;
 use ofc_core::picture::Image;
 use ofc_core::solve::OrientationMethod;
 use ofc_core::stream::{self, Change, Drift, Memory, Params, Pass, State, Stream, StreamError};
@@ -109,15 +110,15 @@ fn sample_word(params: &Params) -> u64 {
     orientation_method << 32 | u64::from(params.solve.lmeds.sample_size)
 }
 
-/// How many floats and bytes lie behind the state, and how many bytes all of it takes; 0 when that is too much.
+/// How many bytes of numbers and of places lie behind the state, and how many all of it takes; 0 when that is too much.
 fn sizes(width: usize, height: usize, sample: u64) -> (usize, usize, usize) {
     let sample_size = sample as u32;
     let orientation_method =
         if sample >> 32 == 0 { OrientationMethod::Direct } else { OrientationMethod::Joint };
-    let values = stream::values_len(width, height, sample_size, orientation_method);
+    let numbers = stream::shared_bytes(width, height, sample_size, orientation_method);
     let places = stream::places_len(width, height, sample_size);
-    let bytes = values.checked_mul(4).and_then(|bytes| bytes.checked_add(places + STATE_BYTES + 7));
-    (values, places, bytes.map_or(0, |bytes| bytes / 8 * 8))
+    let bytes = numbers.checked_add(places + STATE_BYTES + 7);
+    (numbers, places, bytes.map_or(0, |bytes| bytes / 8 * 8))
 }
 
 impl ofc_stream_params {
@@ -154,14 +155,17 @@ unsafe fn opened<'a>(pointer: *mut ofc_stream) -> Result<(Stream<'a>, Extent), o
         return Err(OFC_STATUS_NO_STREAM);
     }
     let (width, height) = ((size >> 32) as usize, size as u32 as usize);
-    let (values, places, bytes) = sizes(width, height, sample);
+    let (numbers, places, bytes) = sizes(width, height, sample);
     let whole = extent(pointer.cast::<u8>().cast_const(), bytes)?;
     // SAFETY: its words say that `init` was here, which has seen that there are so many bytes; state and buffers lie apart.
     let (state, memory) = unsafe {
-        let buffers = head.cast::<f32>().add(STATE_BYTES / size_of::<f32>());
-        let places = output_slice(buffers.add(values).cast::<u8>(), places);
-        let values = output_slice(buffers, values);
-        (&mut (*head).state, Memory { values, places })
+        let state = &mut (*head).state;
+        let Need { doubles, singles, .. } = state.need();
+        let first = head.cast::<f64>().add(STATE_BYTES / size_of::<f64>());
+        let boxes = output_slice(first, doubles);
+        let values = output_slice(first.add(doubles).cast::<f32>(), singles);
+        let places = output_slice(first.cast::<u8>().add(numbers), places);
+        (state, Memory { boxes, values, places })
     };
     Ok((Stream::new(state, memory).map_err(of_stream_error)?, whole))
 }
@@ -184,9 +188,9 @@ pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_param
     }))
 }
 
-/// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where 5184 or what rows
-/// take are more than 20 for each color. Rows take 12 for each pixel of a row with OFC_ORIENTATION_DIRECT, and with OFC_ORIENTATION_JOINT 36
-/// and 116 for each of 192 cells. OFC_STREAM_SIZE(width, height) is no less for the default parameters, for
+/// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where what rows take is more
+/// than 20 for each color. Rows take 3456 and 12 for each pixel of a row, or with OFC_ORIENTATION_JOINT 36 for each pixel of a
+/// row and 116 for each of 192 cells where that is more. OFC_STREAM_SIZE(width, height) is no less for the default parameters, for
 /// static buffers: 47,104 bytes at 320 x 240.
 ///
 /// @return The size, or 0 when an argument is invalid.
@@ -296,7 +300,7 @@ pub unsafe extern "C" fn ofc_stream_begin(stream: *mut ofc_stream, pass: *mut of
         // SAFETY: the contract of this function.
         let (mut stream, own) = unsafe { opened(stream) }?;
         let out = optional(pass, own)?;
-        let pass = stream.begin();
+        let pass = stream.begin().map_err(of_stream_error)?;
         if let Some(out) = out {
             out.write(of_pass(pass));
         }

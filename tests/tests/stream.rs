@@ -1,7 +1,9 @@
 //! Rows instead of pictures.
 
 use ofc_core::color::lmeds::{FitError, Method};
+use ofc_core::light::constrained_slant::WORKSPACE_LEN;
 use ofc_core::light::tilt::TiltEstimator;
+use ofc_core::math::arena::Need;
 use ofc_core::math::rng::Rng;
 use ofc_core::picture::{Image, Order, Sample};
 use ofc_core::solve::{OrientationMethod, Outcome, SlantFallback, Solution, solve, workspace_len};
@@ -19,6 +21,7 @@ use ofc_tests::tolerances::{SAMPLED_ANGLE, SAMPLED_STRENGTH};
 /// A stream over buffers of its own.
 struct Camera {
     state: State,
+    boxes: Vec<f64>,
     values: Vec<f32>,
     places: Vec<u8>,
 }
@@ -29,17 +32,18 @@ impl Camera {
         let state = State::new(width, height, image.sample(), params).unwrap();
         // Whatever the memory holds, it means nothing.
         let values = vec![f32::NAN; values_len(width, height, sample, params.solve.orientation_method)];
-        Self { state, values, places: vec![0xa5; places_len(width, height, sample)] }
+        let (boxes, places) = (vec![f64::NAN; WORKSPACE_LEN], vec![0xa5; places_len(width, height, sample)]);
+        Self { state, boxes, values, places }
     }
 
     fn stream(&mut self) -> Stream<'_> {
-        let memory = Memory { values: &mut self.values, places: &mut self.places };
+        let memory = Memory { boxes: &mut self.boxes, values: &mut self.values, places: &mut self.places };
         Stream::new(&mut self.state, memory).unwrap()
     }
 
     /// One frame.
     fn frame(&mut self, image: &Image) -> Result<Pass, StreamError> {
-        self.stream().begin();
+        self.stream().begin().unwrap();
         for y in 0..image.height() {
             // As if the caller had been away between any two rows.
             self.stream().row(y, &image.row(y).unwrap()).unwrap();
@@ -346,7 +350,7 @@ fn frames_that_are_none() {
     assert_eq!(stream.row(0, &row(0)), Err(StreamError::NoFrame));
     assert_eq!(stream.end(), Err(StreamError::NoFrame));
     assert_eq!(stream.state().normals(&row(0), &mut [0.0; 960]), Err(StreamError::NotSolved));
-    assert_eq!(stream.begin(), Pass::Colors);
+    assert_eq!(stream.begin(), Ok(Pass::Colors));
     assert_eq!(stream.row(1, &row(1)), Err(StreamError::RowOrder));
     stream.row(0, &row(0)).unwrap();
     assert_eq!(stream.row(0, &row(0)), Err(StreamError::RowOrder));
@@ -358,15 +362,15 @@ fn frames_that_are_none() {
     assert_eq!(stream.end(), Err(StreamError::TooFewRows));
     assert_eq!(stream.end(), Err(StreamError::NoFrame));
     // Nothing of this is remembered, nor of a frame that was begun and left.
-    assert_eq!(stream.begin(), Pass::Colors);
+    assert_eq!(stream.begin(), Ok(Pass::Colors));
     stream.row(0, &row(100)).unwrap();
-    assert_eq!(stream.begin(), Pass::Colors);
+    assert_eq!(stream.begin(), Ok(Pass::Colors));
     for y in 0..240 {
         stream.row(y, &row(y)).unwrap();
     }
     assert_eq!(stream.row(240, &row(0)), Err(StreamError::TooManyRows));
     assert_eq!(stream.end(), Ok(Pass::Tilts));
-    assert_eq!(stream.begin(), Pass::Tilts);
+    assert_eq!(stream.begin(), Ok(Pass::Tilts));
     stream.row(0, &row(200)).unwrap();
     assert_eq!(stream.end(), Err(StreamError::TooFewRows));
     let mut other = Camera::new(&image, params);
@@ -404,9 +408,31 @@ fn streams_that_are_none() {
     assert!(size_of::<State>() + 4 * values + places <= 48 << 10, "{}", size_of::<State>());
     for (short_values, short_places) in [(1, 0), (0, 1)] {
         let (mut values, mut places) = (vec![0.0; values - short_values], vec![0; places - short_places]);
-        let memory = Memory { values: &mut values, places: &mut places };
+        let memory = Memory { boxes: &mut [], values: &mut values, places: &mut places };
         assert_eq!(Stream::new(&mut state, memory).err(), Some(StreamError::TooShort));
     }
+}
+
+#[test]
+fn memory_may_be_cut_anew_for_every_pass_but_no_shorter() {
+    let scene = portrait(OrientationMethod::Direct, 1);
+    let mut camera = Camera::new(&scene.whole(), on_paper(Params::default()));
+    assert_eq!(camera.state.need(), Need::of_singles(10_240));
+    assert_eq!(camera.frame(&scene.whole()), Ok(Pass::Tilts));
+    let need = camera.state.need();
+    assert_eq!(need, Need { doubles: 432, singles: 960, integers: 0 });
+    let Camera { state, boxes, values, places } = &mut camera;
+    for (missing_boxes, missing_values) in [(1, 0), (0, 1)] {
+        let (boxes, values) = (&mut boxes[missing_boxes..], &mut values[..need.singles - missing_values]);
+        let stream = Stream::new(state, Memory { boxes, values, places });
+        assert_eq!(stream.err(), Some(StreamError::TooShort));
+    }
+    let mut stream = Stream::new(state, Memory { boxes, values: &mut values[..960], places }).unwrap();
+    assert_eq!(stream.begin(), Ok(Pass::Tilts));
+    // The pass over colors takes more than this stream has.
+    stream.restart();
+    assert_eq!(stream.begin(), Err(StreamError::TooShort));
+    assert_eq!(stream.row(0, &scene.whole().row(0).unwrap()), Err(StreamError::NoFrame));
 }
 
 #[test]

@@ -19,14 +19,15 @@
 
 mod cell;
 mod curve;
+mod descent;
 mod least_squares;
 mod roots;
-mod waiting;
+mod work_list;
 
 pub use curve::{CurvePoint, curve};
 pub use least_squares::{NearestSlants, least_squares, without_roots};
 pub use roots::{roots, roots_within};
-pub use waiting::ROOM;
+pub use work_list::WORKSPACE_LEN;
 
 use crate::math::angle::sincos;
 use crate::math::mat3::{self, Mat3};

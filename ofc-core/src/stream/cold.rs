@@ -174,7 +174,7 @@ impl State {
             return false;
         };
         let mut roots = Candidates::new();
-        constrained_slant::roots_within(tilts, ellipsoid.cosines, memory.values, &mut roots);
+        constrained_slant::roots_within(tilts, ellipsoid.cosines, memory.boxes, &mut roots);
         let fallback = self.params.solve.fallback;
         if let Some((slants, source)) = slants_of(roots.first(), tilts, ellipsoid.cosines, fallback) {
             self.solution.choice = None;

@@ -96,22 +96,22 @@ impl State {
         let enough = self.pixel_counts.usable >= MIN_PIXELS && inlier_share >= self.params.smallest_share;
         self.history.remember(&self.differences, self.rows.step());
         self.rows.advance();
-        let change = if enough { self.refine(memory.values) } else { None };
+        let change = if enough { self.refine(memory.boxes) } else { None };
         self.drift = Some(Drift { inlier_share, change });
         self.pass = if change.is_some() { Pass::Refine } else { Pass::Colors };
     }
 
     /// The new model; `None`, with the old one kept, where there is none.
-    fn refine(&mut self, room: &mut [f32]) -> Option<Change> {
+    fn refine(&mut self, boxes: &mut [f64]) -> Option<Change> {
         let form = self.refined_form()?;
-        let (angles, strengths) = self.adopt_orientation(&form, room)?;
+        let (angles, strengths) = self.adopt_orientation(&form, boxes)?;
         let dispersion = self.adopt_fit()?;
         Some(Change { angles, strengths, dispersion })
     }
 
     /// Takes over what follows from C and the tilts, and says by how much the rows of F turned and grew.
     #[inline(never)]
-    fn adopt_orientation(&mut self, form: &Coefficients, room: &mut [f32]) -> Option<([f64; 3], [f64; 3])> {
+    fn adopt_orientation(&mut self, form: &Coefficients, boxes: &mut [f64]) -> Option<([f64; 3], [f64; 3])> {
         if FULL && self.solution.joint.is_some() {
             return self.adopt_form(form);
         }
@@ -121,7 +121,7 @@ impl State {
         };
         let cosines = cosines(form)?;
         let mut roots = Candidates::new();
-        constrained_slant::roots_within(tilts.tilts, cosines, room, &mut roots);
+        constrained_slant::roots_within(tilts.tilts, cosines, boxes, &mut roots);
         let chosen = nearest(&roots, self.solution.choice.as_ref()?.slants);
         let fallback = self.params.solve.fallback;
         let (slants, source) = slants_of(roots.get(chosen), tilts.tilts, cosines, fallback)?;

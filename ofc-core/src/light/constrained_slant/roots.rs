@@ -14,10 +14,10 @@
 //! # Reference
 //! R. E. Moore, R. B. Kearfott, M. J. Cloud, "Introduction to Interval Analysis", SIAM 2009, chapter 8.
 
-use super::cell::{Cell, Frame, Interval, OVERHANG, ZERO, half_width, halves};
+use super::cell::{Frame, Interval, OVERHANG, ZERO, half_width, halves};
 use super::curve::branch_of;
-use super::least_squares::descend;
-use super::waiting::{Lent, MAX_WAITING, Waiting};
+use super::descent::descend;
+use super::work_list::{WORKSPACE_LEN, WorkList};
 use super::{Candidates, Constraints, SlantRoot, clamp, difference, max_abs};
 use crate::math::mat3;
 
@@ -64,30 +64,31 @@ const SINGULAR: f64 = 1e-9;
 #[must_use]
 pub fn roots(tilts: [f64; 3], cosines: [f64; 3]) -> Candidates {
     let mut found = Candidates::new();
-    solutions(tilts, cosines, &mut heapless::Vec::<Cell, MAX_WAITING>::new(), &mut found);
+    roots_within(tilts, cosines, &mut [0.0; WORKSPACE_LEN], &mut found);
     found
 }
 
-/// [`roots`] with less than 3 kB of stack, into `found`; false, with nothing done, where `room` is shorter than [`ROOM`].
+/// [`roots`] with less than 3 kB of stack, into `found`; false, with nothing done, where `workspace` is too short.
 ///
 /// # Scratch
-/// [`ROOM`] `f32`; what they hold before does not matter.
-pub fn roots_within(tilts: [f64; 3], cosines: [f64; 3], room: &mut [f32], found: &mut Candidates) -> bool {
-    let Some(mut waiting) = Lent::new(room) else { return false };
-    solutions(tilts, cosines, &mut waiting, found);
-    true
-}
-
-fn solutions(tilts: [f64; 3], cosines: [f64; 3], waiting: &mut impl Waiting, found: &mut Candidates) {
+/// [`WORKSPACE_LEN`] `f64`; what they hold before does not matter.
+pub fn roots_within(
+    tilts: [f64; 3],
+    cosines: [f64; 3],
+    workspace: &mut [f64],
+    found: &mut Candidates,
+) -> bool {
+    let Some(mut work_list) = WorkList::new(workspace) else { return false };
     found.clear();
     if let Some(constraints) = Constraints::new(tilts, cosines) {
-        let complete = search(&constraints, &FINE, waiting, found);
+        let complete = search(&constraints, &FINE, &mut work_list, found);
         if !complete {
             found.clear();
-            search(&constraints, &COARSE, waiting, found);
+            search(&constraints, &COARSE, &mut work_list, found);
         }
     }
     sort(found);
+    true
 }
 
 /// Collects the solutions; false when the boxes were too many.
@@ -95,17 +96,17 @@ fn solutions(tilts: [f64; 3], cosines: [f64; 3], waiting: &mut impl Waiting, fou
 fn search(
     constraints: &Constraints,
     resolution: &Resolution,
-    waiting: &mut impl Waiting,
+    work_list: &mut WorkList,
     found: &mut Candidates,
 ) -> bool {
     let frame = Frame::new(constraints);
-    waiting.forget();
+    work_list.clear();
     let mut next = Some(frame.everything());
     let mut leaves = 0;
     for _ in 0..MAX_BOXES {
         let Some(cell) = next else { return true };
         next = match frame.narrow(cell) {
-            None => waiting.take(),
+            None => work_list.pop(),
             Some(narrowed) if half_width(narrowed) <= resolution.leaf => {
                 leaves += 1;
                 if leaves > resolution.max_leaves {
@@ -115,12 +116,12 @@ fn search(
                 if let Some(root) = polish(constraints, middle) {
                     insert(constraints, root, resolution.same, found);
                 }
-                waiting.take()
+                work_list.pop()
             }
             Some(narrowed) if half_width(narrowed) <= 0.5 * half_width(cell) => Some(narrowed),
             Some(narrowed) => {
                 let (low, high) = halves(narrowed);
-                if !waiting.put(high) {
+                if !work_list.push(high) {
                     return false;
                 }
                 Some(low)
@@ -334,8 +335,9 @@ mod tests {
         for _ in 0..500 {
             let (_, tilts, cosines) = random_case(&mut rng);
             let constraints = Constraints::new(tilts, cosines).unwrap();
-            let mut waiting = heapless::Vec::<Cell, MAX_WAITING>::new();
-            assert!(search(&constraints, &FINE, &mut waiting, &mut Candidates::new()));
+            let mut workspace = [f64::NAN; WORKSPACE_LEN];
+            let mut work_list = WorkList::new(&mut workspace).unwrap();
+            assert!(search(&constraints, &FINE, &mut work_list, &mut Candidates::new()));
         }
         // Three equal lights: any common slant will do.
         let found = roots([1.0; 3], [1.0; 3]);
