@@ -1,4 +1,6 @@
-//! Small dense linear algebra, random numbers, order statistics and distributions.
+//! Small dense linear algebra, random numbers, order statistics, distributions, and the arena that cuts a caller's memory.
+//!
+//! Nothing here knows of pictures or colors.
 
 pub mod angle;
 pub mod arena;

@@ -1,4 +1,8 @@
-//! Views over the caller's pixels: how they lie in memory, which of them a method may use, and how neighbours differ.
+//! Views over the caller's pixels: how they lie in memory, which of them a method may use, and how neighbors differ.
+//!
+//! An [`Image`] is checked once when it is made, and read [`WINDOW`] pixels at a time. [`Usable`] says which of them are
+//! finite, not black, not saturated and not shaded; sets of pixels are bits of a [`Window`]. [`cells`] are squares of four
+//! neighbors, the stencil of every finite difference.
 
 pub mod cells;
 pub mod differences;

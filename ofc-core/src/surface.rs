@@ -1,4 +1,4 @@
-//! The surface: normals, how sure they are, and depth.
+//! The surface: [`normals`] by eq. 8, the [`uncertainty`] of each, and [`depth`] by integration.
 
 pub mod depth;
 pub mod normals;
