@@ -4,7 +4,7 @@
 //! Section 3.3: "one could fall back on other slant estimators, or else minimize (15) subject to having knowledge of the
 //! tilts".
 
-use super::SlantSource;
+use super::choice::SlantSource;
 use crate::color::ellipsoid::Ellipsoid;
 use crate::color::inliers::Inliers;
 use crate::light::constrained_slant;

@@ -1,6 +1,7 @@
 //! A second fit, without the colors that a light does not reach.
 
-use super::{Params, Solution};
+use super::parameters::Params;
+use super::solution::Solution;
 use crate::color::ellipsoid::Coefficients;
 use crate::color::inliers::Inliers;
 use crate::color::lmeds::{self, Fit};

@@ -1,0 +1,57 @@
+//! F from tilts: the candidate slants, and the choice among them (section 3.4, steps 4-8).
+
+use super::choice::Choice;
+use super::fallback;
+use super::parameters::Params;
+use crate::color::ellipsoid::Ellipsoid;
+use crate::color::inliers::Inliers;
+use crate::light::constrained_slant;
+use crate::orientation::integrability;
+use crate::orientation::matrix::{self, Orientation};
+use crate::picture::Image;
+
+/// The candidate slants for these tilts, and the one whose normals are most integrable (section 3.4, steps 4-8).
+pub(super) fn choose(
+    image: &Image,
+    inliers: &Inliers,
+    ellipsoid: &Ellipsoid,
+    tilts: [f64; 3],
+    params: &Params,
+    workspace: &mut [f32],
+) -> Option<Choice> {
+    let orient = |slants| orient(ellipsoid, slants, tilts, params);
+    let selector = inliers.selector();
+    let mut choice = Choice::none();
+    choice.set_candidates(&constrained_slant::roots(tilts, ellipsoid.cosines));
+    for candidate in &mut choice.candidates {
+        let orientation = orient(candidate.slants);
+        if orientation.rank == 3 {
+            #[expect(
+                clippy::needless_borrows_for_generic_args,
+                reason = "so that one instance serves tilts_given too"
+            )]
+            let integral = integrability::integral(image, &selector, &orientation.f_inverse);
+            candidate.integral = integral.map_or(f64::INFINITY, |integral| integral.mean);
+        }
+    }
+    if let Some((chosen, slants)) = choice.most_integrable() {
+        (choice.chosen, choice.slants) = (chosen, slants);
+    } else {
+        let fallback = params.fallback;
+        (choice.slants, choice.source) =
+            fallback::slants(fallback, image, inliers, ellipsoid, tilts, workspace)?;
+    }
+    choice.orientation = orient(choice.slants);
+    Some(choice)
+}
+
+/// F from the lengths of its rows, their slants and tilts.
+#[inline(never)]
+pub(crate) fn orient(
+    ellipsoid: &Ellipsoid,
+    slants: [f64; 3],
+    tilts: [f64; 3],
+    params: &Params,
+) -> Orientation {
+    Orientation::new(matrix::compose(ellipsoid.norms, slants, tilts), params.rank_threshold)
+}

@@ -1,0 +1,77 @@
+//! What to do: how F is oriented, where tilts and slants come from, which pixels count.
+
+use super::fallback::SlantFallback;
+use crate::color::lmeds;
+use crate::light::tilt::TiltEstimator;
+use crate::orientation::matrix::RANK_THRESHOLD;
+use crate::picture::{Image, Usable};
+
+/// How the orthogonal transformation that the regression leaves open is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OrientationMethod {
+    /// From integrability and outward normals together, see [`crate::orientation::joint`].
+    Joint,
+    /// The paper's: slants from tilts (section 3).
+    Direct,
+}
+
+/// What to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Params {
+    /// The regression in color space.
+    pub lmeds: lmeds::Params,
+    /// A pixel is saturated if a channel is at or above this; `None` for the largest value of the pixel type, and no
+    /// limit for f32. Default `None`.
+    pub saturation: Option<f32>,
+    /// Whether colors that a light does not reach are looked for and left out. Default true.
+    pub reject_shadows: bool,
+    /// How F is oriented. Given tilts, and a picture that is too small for [`OrientationMethod::Joint`], take the direct method whatever
+    /// this is. Default [`OrientationMethod::Joint`].
+    pub orientation_method: OrientationMethod,
+    /// Where the tilts come from, with the direct method. Default [`TiltEstimator::Pentland`].
+    pub tilts: TiltEstimator,
+    /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
+    pub rank_threshold: f64,
+    /// Where the slants come from when eqs. 25 have no root. Default [`SlantFallback::LeastSquares`].
+    pub fallback: SlantFallback,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            lmeds: lmeds::Params::default(),
+            saturation: None,
+            reject_shadows: true,
+            orientation_method: OrientationMethod::Joint,
+            tilts: TiltEstimator::Pentland,
+            rank_threshold: RANK_THRESHOLD,
+            fallback: SlantFallback::LeastSquares,
+        }
+    }
+}
+
+impl Params {
+    /// Whether every parameter is in its range.
+    #[must_use]
+    pub fn are_valid(&self) -> bool {
+        self.lmeds.subset_count().is_some()
+            && self.saturation.is_none_or(|level| level > 0.0)
+            && (0.0..1.0).contains(&self.rank_threshold)
+            && match self.tilts {
+                TiltEstimator::Given(tilts) => tilts.iter().all(|tilt| tilt.is_finite()),
+                _ => true,
+            }
+    }
+
+    /// Whether F is oriented as a whole, where it can be.
+    pub(crate) const fn is_joint(&self) -> bool {
+        matches!(self.orientation_method, OrientationMethod::Joint)
+            && !matches!(self.tilts, TiltEstimator::Given(_))
+    }
+
+    /// Which pixels of `image` can be used.
+    #[must_use]
+    pub fn usable(&self, image: &Image) -> Usable {
+        Usable::below(self.saturation.unwrap_or(image.sample().saturation()))
+    }
+}
