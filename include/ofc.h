@@ -215,6 +215,15 @@
 // The paper's: slants from tilts (section 3). Good on closed convex shapes, poor on relief that touches the frame.
 #define OFC_ORIENTATION_DIRECT 1
 
+// On with OFC_ORIENTATION_JOINT, off with OFC_ORIENTATION_DIRECT and with given tilts: that method is the paper's.
+#define OFC_SHADOW_REJECTION_AUTO 0
+
+// On, whatever the method.
+#define OFC_SHADOW_REJECTION_ON 1
+
+// Off, whatever the method.
+#define OFC_SHADOW_REJECTION_OFF 2
+
 // Tilts, with the direct method: nothing is known of how sure they are.
 #define OFC_EVIDENCE_TILTS_ALONE 0
 
@@ -615,8 +624,11 @@ typedef struct ofc_solution {
     int32_t chosen;
     // Inliers after both rejections.
     int32_t inlier_count;
-    // Zero.
-    uint32_t reserved;
+    // Bit i, 1 << i, is set where slant_rad[i] is above 90 degrees: the light that channel i is equivalent to shines from
+    // behind the surface, and reaches only parts of it that are turned toward it and away from the camera. Zero with
+    // OFC_ORIENTATION_DIRECT, as in the paper. With OFC_ORIENTATION_JOINT such a light is rare in a picture and common in
+    // a wrong answer.
+    uint32_t lights_from_behind;
     // What became of the pixels before the fit.
     struct ofc_pixel_counts pixel_counts;
     // The regression: C with its errors, dispersion, R^2, inliers after the first rejection.
@@ -631,7 +643,7 @@ typedef struct ofc_solution {
     struct ofc_ellipsoid ellipsoid;
     // Tilts of the rows of F.
     struct ofc_tilts tilts;
-    // Slants of the rows of F, from +z: in [0, pi/2] with the direct method, in [0, pi] on the other.
+    // Slants of the rows of F, from +z: in [0, pi/2] with the direct method, in [0, pi] with the joint one.
     double slant_rad[3];
     // How sure the orientation is.
     struct ofc_confidence confidence;
@@ -1017,6 +1029,10 @@ typedef int32_t ofc_slant_fallback;
 // How the orthogonal transformation that the regression leaves open is found: one of OFC_ORIENTATION_*.
 typedef int32_t ofc_orientation_method;
 
+// Whether colors that one of the lights does not reach are looked for and left out before the fit that counts: one of
+// OFC_SHADOW_REJECTION_*. The paper has no such step.
+typedef int32_t ofc_shadow_rejection;
+
 // What ofc_solve() does. Set by ofc_solve_params_default().
 typedef struct ofc_solve_params {
     // The regression in color space, with the seed and the saturation level.
@@ -1032,8 +1048,9 @@ typedef struct ofc_solve_params {
     // How F is oriented, one of OFC_ORIENTATION_*. Given tilts, and a picture that is too small for OFC_ORIENTATION_JOINT, take the paper's
     // method whatever this is; tilt_estimator and slant_fallback are for that method. Default OFC_ORIENTATION_JOINT.
     ofc_orientation_method orientation_method;
-    // 0 leaves out colors that one of the lights does not reach, where such are found; 1 keeps them. Default 0.
-    int32_t keep_shadows;
+    // Whether colors that one of the lights does not reach are left out, one of OFC_SHADOW_REJECTION_*. Default
+    // OFC_SHADOW_REJECTION_AUTO.
+    ofc_shadow_rejection shadow_rejection;
     // Must be zero.
     uint32_t reserved[4];
 } ofc_solve_params;
@@ -1043,7 +1060,7 @@ typedef struct ofc_stream_params {
     // As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
     // tilt_estimator is OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
     // OFC_FALLBACK_LEAST_SQUARES. A library built without the feature `full-streams`, for small memories, knows
-    // OFC_ORIENTATION_DIRECT with keep_shadows alone, and these are then the defaults.
+    // OFC_ORIENTATION_DIRECT without shadow rejection alone, and this method is then the default.
     struct ofc_solve_params solve;
     // Where less than this share of the usable pixels fits the model, a frame does not refine it and
     // OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.

@@ -11,7 +11,7 @@ mod solution;
 
 pub use choice::{Candidate, Choice, SlantSource};
 pub use fallback::SlantFallback;
-pub use parameters::{OrientationMethod, Params};
+pub use parameters::{OrientationMethod, Params, ShadowRejection};
 pub use solution::{Outcome, Solution};
 
 pub(crate) use color_model::SMALLEST_NOISE_MARGIN;
@@ -49,7 +49,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let usable = params.usable(image);
     let mut solution = Solution::unsolved(usable.count(image), usable);
     let fit = lmeds::fit(image, usable, &params.lmeds, workspace).map(|fit| solution.fit = Some(fit));
-    if fit.is_ok() && params.reject_shadows {
+    if fit.is_ok() && params.rejects_shadows() {
         solution.reject_shadows(image, params, workspace);
     }
     solution.model(image, fit, params, workspace)?;

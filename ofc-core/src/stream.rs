@@ -44,7 +44,7 @@ pub const FULL: bool = cfg!(feature = "full-streams");
 pub struct Params {
     /// The pipeline's. `lmeds.sample_size` is how many colors the sample has room for, at least 24, here 2048 by default;
     /// tilts are Pentland's or given, and without a root slants are refused or fitted by least squares. Unless [`FULL`], the
-    /// method is the paper's and shadows are not looked for.
+    /// method is the direct one and shadows are not looked for.
     pub solve: solve::Params,
     /// Where less than this share of the usable pixels has a residual that the model accepts, in [0, 1], a frame does not
     /// refine it: a cold start is needed. Default 0.5, what least median of squares rests on.
@@ -58,8 +58,7 @@ impl Default for Params {
     fn default() -> Self {
         let lmeds = lmeds::Params { sample_size: 2048, ..lmeds::Params::default() };
         let orientation_method = if FULL { OrientationMethod::Joint } else { OrientationMethod::Direct };
-        let solve =
-            solve::Params { lmeds, orientation_method, reject_shadows: FULL, ..solve::Params::default() };
+        let solve = solve::Params { lmeds, orientation_method, ..solve::Params::default() };
         Self { solve, smallest_share: 0.5, refine_pixels: 16_384 }
     }
 }
@@ -72,7 +71,7 @@ impl Params {
             && (0.0..=1.0).contains(&self.smallest_share)
             // Merged strata leave half of the sample.
             && self.solve.lmeds.sample_size as usize >= 2 * MIN_PIXELS
-            && (FULL || self.solve.orientation_method == OrientationMethod::Direct && !self.solve.reject_shadows)
+            && (FULL || self.solve.orientation_method == OrientationMethod::Direct && !self.solve.rejects_shadows())
             && matches!(self.solve.tilts, TiltEstimator::Pentland | TiltEstimator::Given(_))
             && matches!(self.solve.fallback, SlantFallback::Refuse | SlantFallback::LeastSquares)
     }

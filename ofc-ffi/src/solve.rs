@@ -21,7 +21,7 @@ use core::ffi::c_void;
 use ofc_core::light::tilt::TiltEstimator;
 use ofc_core::orientation::joint::{Evidence, Joint};
 use ofc_core::solve::{
-    self, Candidate, Choice, OrientationMethod, Params, SlantFallback, SlantSource, Solution,
+    self, Candidate, Choice, OrientationMethod, Params, ShadowRejection, SlantFallback, SlantSource, Solution,
 };
 
 /// Where the slants come from: one of OFC_SLANTS_*.
@@ -51,6 +51,16 @@ pub type ofc_orientation_method = i32;
 pub const OFC_ORIENTATION_JOINT: i32 = 0;
 /// The paper's: slants from tilts (section 3). Good on closed convex shapes, poor on relief that touches the frame.
 pub const OFC_ORIENTATION_DIRECT: i32 = 1;
+
+/// Whether colors that one of the lights does not reach are looked for and left out before the fit that counts: one of
+/// OFC_SHADOW_REJECTION_*. The paper has no such step.
+pub type ofc_shadow_rejection = i32;
+/// On with OFC_ORIENTATION_JOINT, off with OFC_ORIENTATION_DIRECT and with given tilts: that method is the paper's.
+pub const OFC_SHADOW_REJECTION_AUTO: i32 = 0;
+/// On, whatever the method.
+pub const OFC_SHADOW_REJECTION_ON: i32 = 1;
+/// Off, whatever the method.
+pub const OFC_SHADOW_REJECTION_OFF: i32 = 2;
 
 /// What decided the orientation: one of OFC_EVIDENCE_*.
 pub type ofc_evidence = i32;
@@ -95,8 +105,9 @@ pub struct ofc_solve_params {
     /// How F is oriented, one of OFC_ORIENTATION_*. Given tilts, and a picture that is too small for OFC_ORIENTATION_JOINT, take the paper's
     /// method whatever this is; tilt_estimator and slant_fallback are for that method. Default OFC_ORIENTATION_JOINT.
     pub orientation_method: ofc_orientation_method,
-    /// 0 leaves out colors that one of the lights does not reach, where such are found; 1 keeps them. Default 0.
-    pub keep_shadows: i32,
+    /// Whether colors that one of the lights does not reach are left out, one of OFC_SHADOW_REJECTION_*. Default
+    /// OFC_SHADOW_REJECTION_AUTO.
+    pub shadow_rejection: ofc_shadow_rejection,
     /// Must be zero.
     pub reserved: [u32; 4],
 }
@@ -136,8 +147,11 @@ pub struct ofc_solution {
     pub chosen: i32,
     /// Inliers after both rejections.
     pub inlier_count: i32,
-    /// Zero.
-    pub reserved: u32,
+    /// Bit i, 1 << i, is set where slant_rad[i] is above 90 degrees: the light that channel i is equivalent to shines from
+    /// behind the surface, and reaches only parts of it that are turned toward it and away from the camera. Zero with
+    /// OFC_ORIENTATION_DIRECT, as in the paper. With OFC_ORIENTATION_JOINT such a light is rare in a picture and common in
+    /// a wrong answer.
+    pub lights_from_behind: u32,
     /// What became of the pixels before the fit.
     pub pixel_counts: ofc_pixel_counts,
     /// The regression: C with its errors, dispersion, R^2, inliers after the first rejection.
@@ -152,7 +166,7 @@ pub struct ofc_solution {
     pub ellipsoid: ofc_ellipsoid,
     /// Tilts of the rows of F.
     pub tilts: ofc_tilts,
-    /// Slants of the rows of F, from +z: in [0, pi/2] with the direct method, in [0, pi] on the other.
+    /// Slants of the rows of F, from +z: in [0, pi/2] with the direct method, in [0, pi] with the joint one.
     pub slant_rad: [f64; 3],
     /// How sure the orientation is.
     pub confidence: ofc_confidence,
@@ -174,7 +188,7 @@ impl ofc_solve_params {
         let Params {
             lmeds: _,
             saturation: _,
-            reject_shadows: _,
+            shadow_rejection: _,
             orientation_method: _,
             tilts: _,
             rank_threshold,
@@ -187,7 +201,7 @@ impl ofc_solve_params {
             tilt_estimator: OFC_TILT_PENTLAND,
             slant_fallback: OFC_FALLBACK_LEAST_SQUARES,
             orientation_method: OFC_ORIENTATION_JOINT,
-            keep_shadows: 0,
+            shadow_rejection: OFC_SHADOW_REJECTION_AUTO,
             reserved: [0; 4],
         }
     }
@@ -200,7 +214,7 @@ impl ofc_solve_params {
             tilt_estimator,
             slant_fallback,
             orientation_method,
-            keep_shadows,
+            shadow_rejection,
             reserved,
         } = self;
         if reserved != [0; 4] {
@@ -229,13 +243,21 @@ impl ofc_solve_params {
             OFC_ORIENTATION_DIRECT => OrientationMethod::Direct,
             _ => return Err(OFC_STATUS_INVALID_PARAMETER),
         };
-        let reject_shadows = match keep_shadows {
-            0 => true,
-            1 => false,
+        let shadow_rejection = match shadow_rejection {
+            OFC_SHADOW_REJECTION_AUTO => ShadowRejection::Auto,
+            OFC_SHADOW_REJECTION_ON => ShadowRejection::On,
+            OFC_SHADOW_REJECTION_OFF => ShadowRejection::Off,
             _ => return Err(OFC_STATUS_INVALID_PARAMETER),
         };
-        let params =
-            Params { lmeds, saturation, reject_shadows, orientation_method, tilts, rank_threshold, fallback };
+        let params = Params {
+            lmeds,
+            saturation,
+            shadow_rejection,
+            orientation_method,
+            tilts,
+            rank_threshold,
+            fallback,
+        };
         if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
     }
 }
@@ -285,7 +307,6 @@ impl ofc_solution {
         } = solution;
         self.outcome = of_outcome(*outcome);
         self.inlier_count = count(*inlier_count);
-        self.reserved = 0;
         self.pixel_counts = (*pixel_counts).into();
         self.fit = fit.as_ref().map_or(ofc_color_fit::default(), ofc_color_fit::from);
         self.fit.color_deviations = fit.as_ref().map_or(*color_deviations, |fit| fit.color_deviations);
@@ -301,11 +322,14 @@ impl ofc_solution {
     #[inline(never)]
     fn set_choice(&mut self, choice: Option<&Choice>) {
         (self.slant_source, self.candidate_count, self.chosen) = (OFC_SLANTS_NONE, 0, -1);
-        self.slant_rad = [0.0; 3];
+        (self.slant_rad, self.lights_from_behind) = ([0.0; 3], 0);
         self.candidates = [ofc_slants::default(); OFC_MAX_CANDIDATES];
         self.orientation = ofc_orientation::default();
         let Some(choice) = choice else { return };
         self.slant_rad = choice.slants;
+        for (i, is_behind) in choice.lights_from_behind().into_iter().enumerate() {
+            self.lights_from_behind |= u32::from(is_behind) << i;
+        }
         self.candidate_count = count(choice.candidates.len());
         for (slot, candidate) in self.candidates.iter_mut().zip(&choice.candidates) {
             *slot = (*candidate).into();

@@ -40,7 +40,7 @@ pub struct ofc_stream_params {
     /// As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
     /// tilt_estimator is OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
     /// OFC_FALLBACK_LEAST_SQUARES. A library built without the feature `full-streams`, for small memories, knows
-    /// OFC_ORIENTATION_DIRECT with keep_shadows alone, and these are then the defaults.
+    /// OFC_ORIENTATION_DIRECT without shadow rejection alone, and this method is then the default.
     pub solve: ofc_solve_params,
     /// Where less than this share of the usable pixels fits the model, a frame does not refine it and
     /// OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
@@ -181,7 +181,7 @@ pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_param
         let mut defaults = ofc_solve_params::defaults();
         defaults.lmeds.sample_size = solve.lmeds.sample_size;
         if !stream::FULL {
-            (defaults.orientation_method, defaults.keep_shadows) = (OFC_ORIENTATION_DIRECT, 1);
+            defaults.orientation_method = OFC_ORIENTATION_DIRECT;
         }
         out.write(ofc_stream_params { solve: defaults, smallest_share, refine_pixels, reserved: [0; 3] });
         OFC_STATUS_OK

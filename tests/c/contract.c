@@ -42,7 +42,6 @@ int prepare_stages(void **state)
     const ofc_image image = ball_image();
     ofc_solve_params_default(&stages.params);
     stages.params.orientation_method = OFC_ORIENTATION_DIRECT;
-    stages.params.keep_shadows = 1; /* the stages one by one know nothing of them */
     const ofc_status fitted = ofc_lmeds_fit(&image, &stages.params.lmeds, workspace, sizeof workspace, &stages.fit,
                                             &stages.inliers);
     const ofc_status solved =

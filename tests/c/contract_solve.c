@@ -114,8 +114,8 @@ static void bad_parameters(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, slant_fallback, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[0], 1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[3], 1);
-    BAD(OFC_STATUS_INVALID_PARAMETER, keep_shadows, 2);
-    BAD(OFC_STATUS_INVALID_PARAMETER, keep_shadows, -1);
+    BAD(OFC_STATUS_INVALID_PARAMETER, shadow_rejection, 3);
+    BAD(OFC_STATUS_INVALID_PARAMETER, shadow_rejection, -1);
     BAD(OFC_STATUS_INVALID_PARAMETER, orientation_method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, orientation_method, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[0], 1);
@@ -217,11 +217,21 @@ static void methods(void **state)
     assert_int_equal(stages.solution.slant_source, OFC_SLANTS_ROOT);
     assert_true(stages.solution.confidence.evidence == OFC_EVIDENCE_TILTS_ALONE);
     assert_true(stages.solution.confidence.error_rad == 0);
-    /* The border of the ball is in the shadow of one light or another: left out, unless it is to be kept. */
+    /* The border of the ball is in the shadow of one light or another: left out by the joint method, kept by the direct
+     * one unless asked. */
     assert_true(joint.pixel_counts.shaded > 0 && joint.inliers.shadow_faces[0].least > 0);
     assert_true(stages.solution.pixel_counts.shaded == 0 && stages.solution.inliers.shadow_faces[0].least == 0);
     assert_int_equal(joint.pixel_counts.usable + joint.pixel_counts.shaded, stages.solution.pixel_counts.usable);
-    params.keep_shadows = 1;
+    static ofc_solution other;
+    params.shadow_rejection = OFC_SHADOW_REJECTION_OFF;
+    assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &other), OFC_STATUS_OK);
+    assert_int_equal(other.pixel_counts.shaded, 0);
+    params.orientation_method = OFC_ORIENTATION_DIRECT;
+    params.shadow_rejection = OFC_SHADOW_REJECTION_ON;
+    assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &other), OFC_STATUS_OK);
+    assert_int_equal(other.pixel_counts.shaded, joint.pixel_counts.shaded);
+    params.orientation_method = OFC_ORIENTATION_JOINT;
+    params.shadow_rejection = OFC_SHADOW_REJECTION_AUTO;
     params.tilt_estimator = OFC_TILT_GIVEN;
     memcpy(params.tilt_rad, stages.solution.tilts.tilt_rad, sizeof params.tilt_rad);
     assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &joint), OFC_STATUS_OK);

@@ -38,7 +38,6 @@ static int fresh_on(ofc_orientation_method orientation_method)
         return -1;
     params.solve.lmeds.sample_size = 10000;
     params.solve.orientation_method = orientation_method;
-    params.solve.keep_shadows = orientation_method == OFC_ORIENTATION_DIRECT;
     memset(memory, 0xa5, sizeof memory);
     return ofc_stream_init(WIDTH, HEIGHT, OFC_PIXEL_RGB8, &params, memory, sizeof memory, &stream);
 }
@@ -375,7 +374,7 @@ static void bad_streams(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, smallest_share, NAN);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.lmeds.sample_size, 23);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.orientation_method, 2);
-    BAD(OFC_STATUS_INVALID_PARAMETER, solve.keep_shadows, 2);
+    BAD(OFC_STATUS_INVALID_PARAMETER, solve.shadow_rejection, 3);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.tilt_estimator, OFC_TILT_CHOJNACKI);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.slant_fallback, OFC_FALLBACK_TILT_INTEGRABILITY);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.rank_threshold, 1);

@@ -135,7 +135,7 @@ void mix_solution(const ofc_solution *solution)
     INTEGER(solution->candidate_count);
     INTEGER(solution->chosen);
     INTEGER(solution->inlier_count);
-    INTEGER(solution->reserved);
+    INTEGER(solution->lights_from_behind);
     mix_pixel_counts(&solution->pixel_counts);
     mix_color_fit(&solution->fit);
     mix_rank(&solution->rank);

@@ -25,7 +25,6 @@ static void mix_method(const ofc_image *image, ofc_orientation_method orientatio
     params.solve.lmeds.sample_size = 300;
     params.solve.lmeds.subsets = 20;
     params.solve.orientation_method = orientation_method;
-    params.solve.keep_shadows = orientation_method == OFC_ORIENTATION_DIRECT;
     mix_status(ofc_stream_init(image->width, image->height, image->format, &params, memory, sizeof memory, &stream));
     for (int frame = 0; stream != NULL && frame < 5; frame++) {
         ofc_stream_pass pass = 0;

@@ -3,7 +3,7 @@
 use ofc_core::picture::Faces;
 use ofc_core::picture::{Image, Order, Sample};
 use ofc_core::render::{self, Canvas, Lights, Outputs, render};
-use ofc_core::solve::{OrientationMethod, Outcome, Params, Solution, solve, workspace_len};
+use ofc_core::solve::{OrientationMethod, Outcome, Params, ShadowRejection, Solution, solve, workspace_len};
 use ofc_tests::depth_maps::{Relief, direction, peaks, sphere};
 
 const SIZE: usize = 192;
@@ -75,9 +75,15 @@ fn the_faces_are_spanned_by_the_colors_of_two_lights() {
             / (solution.pixel_counts.shaded + solution.pixel_counts.usable) as f64;
         println!("noise {noise}: {count} faces, off by {worst:.4}, {:.1} % shaded", 100.0 * share);
         assert!(count == 3 && worst < 0.02 && (0.2..0.67).contains(&share));
-        // Who wants them gets them.
-        let kept = solved(&relief, &pixels, Params { reject_shadows: false, ..Params::default() });
-        assert_eq!((kept.pixel_counts.shaded, kept.inliers.usable.shadow_faces), (0, Faces::NONE));
+        // Off, and with the direct method unless asked, all pixels stay.
+        let off = Params { shadow_rejection: ShadowRejection::Off, ..Params::default() };
+        let direct = Params { orientation_method: OrientationMethod::Direct, ..Params::default() };
+        for params in [off, direct] {
+            let kept = solved(&relief, &pixels, params);
+            assert_eq!((kept.pixel_counts.shaded, kept.inliers.usable.shadow_faces), (0, Faces::NONE));
+        }
+        let asked = Params { shadow_rejection: ShadowRejection::On, ..direct };
+        assert_eq!(solved(&relief, &pixels, asked).pixel_counts, solution.pixel_counts);
     }
 }
 
@@ -87,7 +93,11 @@ fn without_shadows_there_are_no_faces() {
     for (name, relief) in [("peaks", peaks(SIZE, SIZE)), ("bottle", bottle())] {
         for noise in [0.3, 1.0] {
             let pixels = picture(&relief, [15.0, 18.0, 20.0], noise);
-            let params = Params { orientation_method: OrientationMethod::Direct, ..Params::default() };
+            let params = Params {
+                orientation_method: OrientationMethod::Direct,
+                shadow_rejection: ShadowRejection::On,
+                ..Params::default()
+            };
             let solution = solved(&relief, &pixels, params);
             assert_eq!(solution.pixel_counts.shaded, 0, "{name} {noise}");
         }

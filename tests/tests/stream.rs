@@ -6,7 +6,9 @@ use ofc_core::light::tilt::TiltEstimator;
 use ofc_core::math::arena::Need;
 use ofc_core::math::rng::Rng;
 use ofc_core::picture::{Image, Order, Sample};
-use ofc_core::solve::{OrientationMethod, Outcome, SlantFallback, Solution, solve, workspace_len};
+use ofc_core::solve::{
+    OrientationMethod, Outcome, ShadowRejection, SlantFallback, Solution, solve, workspace_len,
+};
 use ofc_core::stream::{Change, Memory, Params, Pass, State, Stream, StreamError, places_len, values_len};
 use ofc_core::surface::normals::{self, Length};
 use ofc_tests::bust::bust;
@@ -69,17 +71,19 @@ fn sampling(sample_size: u32) -> Params {
     params
 }
 
-/// with the direct method, with shadows, as streams are without the feature `full-streams`.
-fn on_paper(mut params: Params) -> Params {
-    (params.solve.orientation_method, params.solve.reject_shadows) = (OrientationMethod::Direct, false);
+/// The direct method, as streams take it without the feature `full-streams`.
+fn direct(mut params: Params) -> Params {
+    params.solve.orientation_method = OrientationMethod::Direct;
     params
 }
 
-/// Both methods, without shadows and with them.
-fn methods(params: Params) -> [Params; 3] {
-    let mut shaded = params;
-    shaded.solve.reject_shadows = false;
-    [params, shaded, on_paper(params)]
+/// Both methods, with shadow rejection and without.
+fn methods(params: Params) -> [Params; 4] {
+    let with = |mut params: Params, shadow_rejection| {
+        params.solve.shadow_rejection = shadow_rejection;
+        params
+    };
+    [params, with(params, ShadowRejection::Off), direct(params), with(direct(params), ShadowRejection::On)]
 }
 
 fn whole(image: &Image, params: &Params) -> Solution {
@@ -155,7 +159,7 @@ fn a_sample_of_everything_gives_the_same_bits() {
                 let encoded = scene.encode_as(Layout { sample, order, gap: 12 });
                 let usable = scene.colors.iter().filter(|c| c.iter().any(|&v| v > 0.0)).count();
                 // All pixels, and with the direct method exactly as many as there are: windows are all there where there is room for all pixels, usable or not.
-                let alone = on_paper(sampling(usable as u32));
+                let alone = direct(sampling(usable as u32));
                 for params in methods(sampling((width * height) as u32)).into_iter().chain([alone]) {
                     let (outcome, candidates) = assert_same(&encoded.image(), params);
                     solved += usize::from(outcome == Outcome::Solved);
@@ -225,7 +229,7 @@ fn parameters_reach_every_pass() {
         Scene::render(70, 60, three_lights(), sphere(48.0, 36.0)).with_noise(0.7, &mut Rng::new(3)).rounded();
     let encoded = scene.encode();
     let image = encoded.image();
-    let base = on_paper(sampling(4200));
+    let base = direct(sampling(4200));
     let mut outcomes = Vec::new();
     for fallback in [SlantFallback::Refuse, SlantFallback::LeastSquares] {
         for tilts in
@@ -314,8 +318,8 @@ fn a_sample_of_a_portrait() {
         let (angle, strength) = apart(&found.f, &expected.f);
         let errors = [found, &expected].map(|orientation| median_error(&scene, &orientation.f_inverse));
         println!(
-            "{:?} {}, {seed}: {angle:.2} deg, {strength:.4}; {:.2}, {:.2} deg",
-            params.solve.orientation_method, params.solve.reject_shadows, errors[0], errors[1]
+            "{:?} {:?}, {seed}: {angle:.2} deg, {strength:.4}; {:.2}, {:.2} deg",
+            params.solve.orientation_method, params.solve.shadow_rejection, errors[0], errors[1]
         );
         assert!(angle < SAMPLED_ANGLE && strength < SAMPLED_STRENGTH);
         assert!(errors[0] < errors[1] + SAMPLED_ANGLE);
@@ -344,7 +348,7 @@ fn frames_that_are_none() {
     let scene = portrait(OrientationMethod::Direct, 1);
     let image = scene.whole();
     let row = |y| image.row(y).unwrap();
-    let params = on_paper(Params::default());
+    let params = direct(Params::default());
     let mut camera = Camera::new(&image, params);
     let mut stream = camera.stream();
     assert_eq!(stream.row(0, &row(0)), Err(StreamError::NoFrame));
@@ -416,7 +420,7 @@ fn streams_that_are_none() {
 #[test]
 fn memory_may_be_cut_anew_for_every_pass_but_no_shorter() {
     let scene = portrait(OrientationMethod::Direct, 1);
-    let mut camera = Camera::new(&scene.whole(), on_paper(Params::default()));
+    let mut camera = Camera::new(&scene.whole(), direct(Params::default()));
     assert_eq!(camera.state.need(), Need::of_singles(10_240));
     assert_eq!(camera.frame(&scene.whole()), Ok(Pass::Tilts));
     let need = camera.state.need();
@@ -463,7 +467,7 @@ fn refined(camera: &mut Camera, scene: &shaded_scenes::Scene) -> (f64, Change) {
 
 #[test]
 fn frames_of_the_same_scene_refine_the_model() {
-    for params in [Params::default(), on_paper(Params::default())] {
+    for params in [Params::default(), direct(Params::default())] {
         refine(params);
     }
 }
@@ -542,7 +546,7 @@ fn noise_that_comes_and_goes() {
 
 #[test]
 fn lights_that_grow_stronger_are_followed() {
-    let (mut camera, _) = solved(on_paper(Params::default()));
+    let (mut camera, _) = solved(direct(Params::default()));
     let f = camera.state.orientation().unwrap().f;
     for frame in 1..=20_u32 {
         let gain = 1.0 + 0.02 * f64::from(frame);
@@ -560,11 +564,11 @@ fn lights_that_grow_stronger_are_followed() {
 #[test]
 fn other_lights_need_a_cold_start() {
     for (params, lights) in
-        [(Params::default(), shaded_scenes::PAPER), (on_paper(Params::default()), shaded_scenes::CLEAN)]
+        [(Params::default(), shaded_scenes::PAPER), (direct(Params::default()), shaded_scenes::CLEAN)]
     {
         changes(params, &lights);
     }
-    let params = on_paper(Params::default());
+    let params = direct(Params::default());
     // How many must fit is the caller's to say; a black frame fits nobody.
     let (mut strict, _) = solved(Params { smallest_share: 0.99, ..params });
     assert_eq!(strict.frame(&portrait(OrientationMethod::Direct, 100).whole()), Ok(Pass::Colors));

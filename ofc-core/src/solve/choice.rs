@@ -2,6 +2,7 @@
 
 use crate::light::constrained_slant::{Candidates, MAX_CANDIDATES, SlantRoot};
 use crate::orientation::matrix::Orientation;
+use core::f64::consts::FRAC_PI_2;
 use heapless::Vec;
 
 /// Where the slants come from.
@@ -39,7 +40,8 @@ pub struct Candidate {
 /// The candidates and the choice among them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// The slants of F.
+    /// The slants of F, from +z: in [0, pi/2] with the direct method, in [0, pi] with the joint one, see
+    /// [`Self::lights_from_behind`].
     pub slants: [f64; 3],
     /// Where they come from.
     pub source: SlantSource,
@@ -52,6 +54,14 @@ pub struct Choice {
 }
 
 impl Choice {
+    /// Which rows of F have a slant above 90 degrees: the light that such a channel is equivalent to shines from behind the
+    /// surface, and reaches only parts of it that are turned away from the camera by more than that. The paper has no such
+    /// lights; with the joint method, which does not ask for slants, one is rare in a picture and common in a wrong answer.
+    #[must_use]
+    pub fn lights_from_behind(&self) -> [bool; 3] {
+        self.slants.map(|slant| slant > FRAC_PI_2)
+    }
+
     /// No choice yet.
     pub(crate) const fn none() -> Self {
         Self {
@@ -77,5 +87,17 @@ impl Choice {
         let candidates = self.candidates.iter().enumerate();
         let least = candidates.min_by(|(_, a), (_, b)| a.integral.total_cmp(&b.integral));
         least.map(|(chosen, candidate)| (chosen, candidate.slants))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lights_from_behind_are_those_above_90_degrees() {
+        let mut choice = Choice::none();
+        choice.slants = [FRAC_PI_2, FRAC_PI_2 + 1e-9, 0.1];
+        assert_eq!(choice.lights_from_behind(), [false, true, false]);
     }
 }

@@ -15,6 +15,19 @@ pub enum OrientationMethod {
     Direct,
 }
 
+/// Whether colors that one of the lights does not reach are looked for and left out before the fit that counts. The paper
+/// has no such step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ShadowRejection {
+    /// On with the joint method, off with the direct one: that is the paper's.
+    #[default]
+    Auto,
+    /// Whatever the method.
+    On,
+    /// Whatever the method.
+    Off,
+}
+
 /// What to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
@@ -23,8 +36,8 @@ pub struct Params {
     /// A pixel is saturated if a channel is at or above this; `None` for the largest value of the pixel type, and no
     /// limit for f32. Default `None`.
     pub saturation: Option<f32>,
-    /// Whether colors that a light does not reach are looked for and left out. Default true.
-    pub reject_shadows: bool,
+    /// Whether colors that one of the lights does not reach are left out. Default [`ShadowRejection::Auto`].
+    pub shadow_rejection: ShadowRejection,
     /// How F is oriented. Given tilts, and a picture that is too small for [`OrientationMethod::Joint`], take the direct method whatever
     /// this is. Default [`OrientationMethod::Joint`].
     pub orientation_method: OrientationMethod,
@@ -41,7 +54,7 @@ impl Default for Params {
         Self {
             lmeds: lmeds::Params::default(),
             saturation: None,
-            reject_shadows: true,
+            shadow_rejection: ShadowRejection::Auto,
             orientation_method: OrientationMethod::Joint,
             tilts: TiltEstimator::Pentland,
             rank_threshold: RANK_THRESHOLD,
@@ -67,6 +80,15 @@ impl Params {
     pub(crate) const fn is_joint(&self) -> bool {
         matches!(self.orientation_method, OrientationMethod::Joint)
             && !matches!(self.tilts, TiltEstimator::Given(_))
+    }
+
+    /// Whether colors that one of the lights does not reach are left out.
+    pub(crate) const fn rejects_shadows(&self) -> bool {
+        match self.shadow_rejection {
+            ShadowRejection::Auto => self.is_joint(),
+            ShadowRejection::On => true,
+            ShadowRejection::Off => false,
+        }
     }
 
     /// Which pixels of `image` can be used.

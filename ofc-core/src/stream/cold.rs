@@ -80,7 +80,7 @@ impl State {
     fn model(&mut self, fit: Result<(), FitError>, memory: &mut Memory) -> Result<(), FitError> {
         let (pixels, workspace) = self.sampled(memory).ok_or(FitError::WorkspaceTooShort)?;
         let params = &self.params.solve;
-        if FULL && fit.is_ok() && params.reject_shadows {
+        if FULL && fit.is_ok() && params.rejects_shadows() {
             self.solution.reject_shadows(&pixels, params, workspace);
         }
         self.solution.model(&pixels, fit, params, workspace)
