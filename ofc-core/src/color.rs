@@ -14,5 +14,8 @@ pub mod location;
 pub mod norms;
 pub mod rank;
 pub mod regression;
+mod rounding;
+pub(crate) mod scale;
+mod second_moments;
 pub mod segment;
 pub mod shadows;

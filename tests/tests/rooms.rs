@@ -53,7 +53,9 @@ impl Names {
             "crate" => Vec::new(),
             "self" => self.module.clone(),
             "super" => self.module.split_last()?.1.to_vec(),
-            child if self.children.contains(child) => [self.module.as_slice(), std::slice::from_ref(first)].concat(),
+            child if self.children.contains(child) => {
+                [self.module.as_slice(), std::slice::from_ref(first)].concat()
+            }
             _ => return None,
         };
         for name in rest {

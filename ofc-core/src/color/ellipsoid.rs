@@ -1,4 +1,4 @@
-//! The colour-space quadratic form: colors of a matte surface lie on the ellipsoid rho^T C rho = 1.
+//! The color-space quadratic form: colors of a matte surface lie on the ellipsoid rho^T C rho = 1.
 //!
 //! # Reference
 //! Section 2.1, eqs. 8-10 and 18.
@@ -24,6 +24,15 @@ pub fn quadratic_form(z: &Coefficients, r: f32, g: f32, b: f32) -> f64 {
     let (r, g, b) = (f64::from(r), f64::from(g), f64::from(b));
     let cross = c12 * r * g + c13 * r * b + c23 * g * b;
     c11 * r * r + c22 * g * g + c33 * b * b + 2.0 * cross
+}
+
+/// rho^T C rho - 1 in single precision, for what compares residuals of scaled colors and needs no digit of them.
+#[inline]
+pub(crate) fn single_residual(z: &[f32; 6], [r, g, b]: [f32; 3]) -> f32 {
+    let [c11, c22, c33, c12, c13, c23] = *z;
+    let red = r * (c11 * r + 2.0 * (c12 * g + c13 * b));
+    let green = g * (c22 * g + 2.0 * c23 * b);
+    red + green + c33 * b * b - 1.0
 }
 
 /// Whether C is positive definite, by its leading minors: cheap enough for every candidate of a search.

@@ -20,10 +20,11 @@
 //! Section 2: A and B must have rank 3. \[13\]: A. P. Petrov, L. L. Kontsevich, "Properties of color images of surfaces under
 //! multiple illuminants", J. Opt. Soc. Am. A 11, 1994.
 
-use crate::color::ellipsoid::{self, Coefficients};
+use super::ellipsoid::{self, Coefficients};
+use super::rounding;
+use super::second_moments::SecondMoments;
 use crate::math::mat3::{self, Mat3, SymmetricEigen};
-use crate::picture::Pixels;
-use crate::picture::{Sample, Window, for_each_bit};
+use crate::picture::{Pixels, Sample, Window, for_each_bit};
 use libm::sqrt;
 
 /// Deviations of the colors below this many times the noise are noise.
@@ -34,8 +35,6 @@ const NORMAL_THRESHOLD: f64 = 3.0;
 const CONIC_THRESHOLD: f64 = 2.0;
 /// Brightness that varies less than this many times the noise is constant.
 const CONSTANT_THRESHOLD: f64 = 3.0;
-/// The deviation of rounding to integers.
-const ROUNDING: f64 = 0.288_675_134_594_812_9;
 /// Noise is at least this share of the largest deviation, with a fit and without one.
 const SMALLEST_NOISE: f64 = 1e-6;
 const NOISE_WITHOUT_FIT: f64 = 1e-3;
@@ -84,7 +83,7 @@ pub fn rank(
     let color_deviations = colors.eigen.values.map(|square| sqrt(square.max(0.0)));
     let [largest, second, third] = color_deviations;
     let floor = match pixels.sample() {
-        Sample::U8 | Sample::U16 => ROUNDING,
+        Sample::U8 | Sample::U16 => rounding::DEVIATION,
         Sample::F32 => SMALLEST_NOISE * largest,
     };
     let color_noise = match fit {
@@ -143,24 +142,22 @@ struct Colors {
 impl Colors {
     #[inline(never)]
     fn of(pixels: &impl Pixels, inliers: impl Fn(&Window) -> u64) -> Option<Self> {
-        let (mut sum, mut squares, mut count) = ([0.0; 3], [0.0; 6], 0_u64);
+        let (mut sum, mut moments, mut count) = ([0.0; 3], SecondMoments::default(), 0_u64);
         pixels.for_each_window(|window| {
             let bits = inliers(window);
             for_each_bit(bits, |i| {
-                let [r, g, b] = window.pixel(i).map(f64::from);
-                for (sum, value) in sum.iter_mut().zip([r, g, b]) {
+                let color = window.pixel(i).map(f64::from);
+                for (sum, value) in sum.iter_mut().zip(color) {
                     *sum += value;
                 }
-                for (sum, value) in squares.iter_mut().zip([r * r, g * g, b * b, r * g, r * b, g * b]) {
-                    *sum += value;
-                }
+                moments.add(color);
             });
             count += u64::from(bits.count_ones());
         });
         if count == 0 {
             return None;
         }
-        let moments = ellipsoid::matrix(&squares.map(|sum| sum / count as f64));
+        let moments = moments.mean(count as f64);
         let mean = sum.map(|sum| sum / count as f64);
         Some(Self { mean, moments, eigen: mat3::symmetric_eigen(&moments) })
     }

@@ -11,7 +11,7 @@ mod errors;
 
 pub use errors::{Triangle, add_square, whole};
 
-use crate::color::ellipsoid::Coefficients;
+use crate::color::ellipsoid::{Coefficients, matrix};
 use crate::math::mat6::{self, Mat6};
 use crate::math::student_t;
 use libm::sqrt;
@@ -75,8 +75,7 @@ impl Moments {
     /// The second moments of the colors, E\[rho rho^T\].
     #[must_use]
     pub fn second_moments(&self) -> [[f64; 3]; 3] {
-        let [rr, gg, bb, rg, rb, gb] = self.quadratic.map(|sum| sum / f64::from(self.count.max(1)));
-        [[rr, rg, rb], [rg, gg, gb], [rb, gb, bb]]
+        matrix(&self.quadratic.map(|sum| sum / f64::from(self.count.max(1))))
     }
 
     fn normal_matrix(&self) -> Mat6 {

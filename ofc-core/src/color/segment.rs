@@ -20,76 +20,21 @@
 //! Section 1.2. \[13\]: A. P. Petrov, L. L. Kontsevich, J. Opt. Soc. Am. A 11, 1994. \[14\]: L. L. Kontsevich, A. P. Petrov,
 //! I. S. Vergelskaya, J. Opt. Soc. Am. A 11, 1994.
 
+mod field;
 mod grow;
+mod params;
 pub mod patches;
 mod seed;
 
-use crate::color::ellipsoid::Coefficients;
-use crate::color::rank::{Rank, rank};
+pub use params::{MAX_REGIONS, Params};
+
+use super::ellipsoid::Coefficients;
+use super::rank::{Rank, rank};
+use super::scale::reciprocal_power_of_two;
 use crate::math::rng::Rng;
 use crate::picture::{Image, Usable, Window, for_each_bit};
-use grow::Field;
+use field::{FREE, Field, TRIED, UNUSABLE};
 use heapless::Vec;
-
-/// Room for regions.
-pub const MAX_REGIONS: usize = 16;
-
-/// Labels while the work is going on: a pixel that can still be taken, one that no region may begin at again, and one
-/// that cannot be used at all. The last two are above every region's label, and zero in the end.
-const FREE: u16 = 0;
-const TRIED: u16 = u16::MAX;
-const UNUSABLE: u16 = u16::MAX - 1;
-
-/// How to segment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Params {
-    /// The largest |rho^T C rho - 1| within a region, in (0, 1). Default 0.1: colors within 5 % of the ellipsoid.
-    pub tolerance: f64,
-    /// Smaller regions are dropped, pixels, at least 12. Default 200.
-    pub min_pixels: u32,
-    /// At most this many regions, 1 to [`MAX_REGIONS`]. Default 8.
-    pub max_regions: u32,
-    /// Blocks of six pixels that are tried for each region, at least 1 and at most 1,000,000. Default 300.
-    pub blocks: u32,
-    /// The distance between the pixels of a block, 0 to 64, or 0 for 1, 2, 4, 8 and 16 in turn; 1 is \[14\]. Default 0.
-    pub spacing: u32,
-    /// How far around a block its C is tried, in pixels, 1 to 1000. Default 24.
-    pub reach: u32,
-    /// Times that a region is fitted and grown again, at most 100. Default 12; 0 is \[14\].
-    pub refits: u32,
-    /// Fixes every random choice. Default 0.
-    pub seed: u64,
-}
-
-impl Default for Params {
-    fn default() -> Self {
-        Self {
-            tolerance: 0.1,
-            min_pixels: 200,
-            max_regions: 8,
-            blocks: 300,
-            spacing: 0,
-            reach: 24,
-            refits: 12,
-            seed: 0,
-        }
-    }
-}
-
-impl Params {
-    /// Whether every parameter is in its range.
-    #[must_use]
-    pub fn are_valid(&self) -> bool {
-        self.tolerance > 0.0
-            && self.tolerance < 1.0
-            && self.min_pixels >= 12
-            && (1..=MAX_REGIONS as u32).contains(&self.max_regions)
-            && (1..=1_000_000).contains(&self.blocks)
-            && self.spacing <= 64
-            && (1..=1000).contains(&self.reach)
-            && self.refits <= 100
-    }
-}
 
 /// Why there is no segmentation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,9 +114,9 @@ pub fn segment(
         }
         let Some(seed) = seed::best(&mut field, params, &mut rng) else { break };
         let label = regions.len() as u16 + 1;
-        let grown = field.region(&seed, label, params);
+        let grown = grow::region(&mut field, &seed, label, params);
         if grown.pixels < params.min_pixels as usize {
-            field.relabel(&grown, TRIED);
+            field.relabel(grown.pixels, TRIED);
             continue;
         }
         let region = Region {
@@ -201,7 +146,7 @@ pub fn segment(
 /// Reads the picture: colors, and what labels begin with. Returns the power of two that the colors were multiplied by.
 fn load(image: &Image, usable: Usable, labels: &mut [u16], colors: &mut [[f32; 3]]) -> f64 {
     let largest = usable.count(image).largest;
-    let scale = if largest > 0.0 { crate::color::lmeds::reciprocal_power_of_two(largest) } else { 1.0 };
+    let scale = if largest > 0.0 { reciprocal_power_of_two(largest) } else { 1.0 };
     labels.fill(UNUSABLE);
     image.for_each_window(|window| {
         let start = window.y * image.width() + window.x;

@@ -5,9 +5,9 @@ use super::solution::Solution;
 use crate::color::ellipsoid::Coefficients;
 use crate::color::inliers::Inliers;
 use crate::color::lmeds::{self, Fit};
+use crate::color::scale::reciprocal_power_of_two;
 use crate::color::shadows;
-use crate::picture::Pixels;
-use crate::picture::Usable;
+use crate::picture::{Pixels, Usable};
 
 /// Times that shadows are looked for: an ellipsoid that they no longer bend shows more of them.
 const ROUNDS: usize = 2;
@@ -45,50 +45,41 @@ impl Solution {
     ) -> Option<usize> {
         let fit = self.fit.as_ref()?;
         let usable = Usable::below(self.inliers.usable.saturation);
-        let room = workspace.get_mut(..2 * count)?;
-        let faces = shadows::find(pixels, usable, count, fit.band, fit.noise_deviation, params.seed, room)?;
-        let (z, mut refit) = (fit.z(), None);
-        let lit = Usable { shadow_faces: faces, ..usable };
-        let mut left = self.refit(pixels, lit, z, params, workspace, &mut refit)?;
-        let confirmed = Usable {
-            shadow_faces: shadows::confirmed(&faces, pixels, usable, refit.as_ref()?.band)?,
-            ..usable
+        let scale = reciprocal_power_of_two(self.pixel_counts.largest);
+        let all = lmeds::Problem { pixels, usable, count, scale, params };
+        let faces = shadows::find(&all, fit, workspace.get_mut(..2 * count)?)?;
+        let above = |shadow_faces| {
+            let usable = Usable { shadow_faces, ..usable };
+            lmeds::Problem { usable, count: Inliers::all(usable).count(pixels), ..all }
         };
-        if confirmed != lit {
-            left = self.refit(pixels, confirmed, z, params, workspace, &mut refit)?;
+        let z = fit.z();
+        let mut fit = refit(&above(faces), z, workspace)?;
+        let confirmed = shadows::confirmed(&faces, &all, fit.band)?;
+        if confirmed != faces {
+            fit = refit(&above(confirmed), z, workspace)?;
         }
+        let left = fit.usable;
         if SMALLEST_SHARE * left < count {
             return None;
         }
-        self.fit = refit;
-        self.inliers.usable = confirmed;
+        self.fit = Some(fit);
+        self.inliers.usable = Usable { shadow_faces: confirmed, ..usable };
         Some(left)
     }
+}
 
-    /// Puts the fit that begins at `z` into `out`, and says how many pixels it is of.
-    #[inline(never)]
-    fn refit(
-        &self,
-        pixels: &impl Pixels,
-        usable: Usable,
-        z: Coefficients,
-        params: &lmeds::Params,
-        workspace: &mut [f32],
-        out: &mut Option<Fit>,
-    ) -> Option<usize> {
-        let count = Inliers::all(usable).count(pixels);
-        let scale = lmeds::reciprocal_power_of_two(self.pixel_counts.largest);
-        if count < lmeds::MIN_PIXELS {
-            return None;
-        }
-        // The band is about the z that it begins at: once more about its own.
-        let mut z = z;
-        for _ in 0..2 {
-            let scaled = z.map(|c| c / (scale * scale));
-            lmeds::evaluate::<true>(pixels, usable, count, scale, Some(scaled), params, workspace, out)
-                .ok()?;
-            z = out.as_ref()?.z();
-        }
-        Some(count)
+/// The fit that begins at `z`; `None` where the pixels are too few, or determine none.
+#[inline(never)]
+fn refit<P: Pixels>(problem: &lmeds::Problem<P>, z: Coefficients, workspace: &mut [f32]) -> Option<Fit> {
+    if problem.count < lmeds::MIN_PIXELS {
+        return None;
     }
+    let (mut z, mut fit) = (z, None);
+    // The band is about the z that it begins at: once more about its own.
+    for _ in 0..2 {
+        let scaled = z.map(|c| c / (problem.scale * problem.scale));
+        problem.evaluate::<true>(Some(scaled), workspace, &mut fit).ok()?;
+        z = fit.as_ref()?.z();
+    }
+    fit
 }

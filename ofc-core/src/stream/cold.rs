@@ -6,6 +6,7 @@ use super::{FULL, Held, Memory, Pass, State, StreamError, room};
 use crate::color::ellipsoid::Coefficients;
 use crate::color::inliers::Inliers;
 use crate::color::lmeds::{self, FitError, Method};
+use crate::color::scale::reciprocal_power_of_two;
 use crate::light::constrained_slant::{self, Candidates, MAX_CANDIDATES, SlantRoot};
 use crate::light::tilt::{TiltEstimator, Tilts, pentland};
 use crate::math::rng::Rng;
@@ -50,7 +51,7 @@ impl State {
         self.solution.restart(self.pixel_counts);
         self.concluded = false;
         lmeds::enough(&self.pixel_counts, self.width * self.height).map_err(StreamError::Fit)?;
-        self.scale = lmeds::reciprocal_power_of_two(self.pixel_counts.largest);
+        self.scale = reciprocal_power_of_two(self.pixel_counts.largest);
         self.rows = Rows::new(self.height, &self.pixel_counts, self.params.refine_pixels);
         self.drift = None;
         let found = self.search(memory);
@@ -66,13 +67,13 @@ impl State {
     fn fit(&mut self, found: Option<Coefficients>, memory: &mut Memory) -> Result<(), FitError> {
         let (pixels, workspace) = self.sampled(memory).ok_or(FitError::WorkspaceTooShort)?;
         let params = &self.params.solve.lmeds;
-        let (usable, count) = (self.usable(), self.strata.len());
+        let (usable, count, scale) = (self.usable(), self.strata.len(), self.scale);
+        let problem = lmeds::Problem { pixels: &pixels, usable, count, scale, params };
         let scaled = match params.method {
             Method::LeastMedian => found,
-            Method::LeastSquares => lmeds::least_squares(&pixels, usable, self.scale),
+            Method::LeastSquares => problem.least_squares(),
         };
-        let fit = &mut self.solution.fit;
-        lmeds::evaluate::<FULL>(&pixels, usable, count, self.scale, scaled, params, workspace, fit)
+        problem.evaluate::<FULL>(scaled, workspace, &mut self.solution.fit)
     }
 
     /// What follows from the fit.
@@ -115,7 +116,7 @@ impl State {
         rng.skip(count as u64);
         multiply(&mut colors, self.scale);
         let scaled = colors.each_ref().map(|channel| &**channel);
-        let found = lmeds::search(scaled, residuals, lmeds.subset_count()?, &mut rng);
+        let found = lmeds::Sample::new(scaled, residuals).best(lmeds.subset_count()?, &mut rng);
         multiply(&mut colors, 1.0 / self.scale);
         found
     }

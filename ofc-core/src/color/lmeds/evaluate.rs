@@ -1,90 +1,89 @@
 //! From the z that was found to the fit: the objective over all pixels, and the rejection that follows from it.
 
 use super::noise::noise;
-use super::reweighted::{Refit, covariance, deviations, moments, reweighted};
-use super::{Fit, FitError, Method, Params};
+use super::params::Method;
+use super::problem::Problem;
+use super::result::{Fit, FitError};
+use super::reweighted::{Refit, covariance, deviations};
 use crate::color::dispersion::dispersion;
 use crate::color::ellipsoid::{Coefficients, quadratic_form};
 use crate::color::inliers::{Band, Inliers};
 use crate::color::regression::{Moments, TERMS};
 use crate::math::select::{kth_smallest, median_rank};
 use crate::picture::Pixels;
-use crate::picture::Usable;
 use libm::fabs;
 
-/// The fit that follows from the `scaled` z that was found: rejection and the reweighted fit, over the `count` usable ones
-/// of these pixels. It is in `out` unless there is an error. Its covariance and the noise of its pixels are there if `ERRORS`,
-/// and zero otherwise.
-#[inline(never)]
-#[expect(clippy::too_many_arguments, reason = "what a search leaves, and what it was given")]
-pub(crate) fn evaluate<const ERRORS: bool>(
-    pixels: &impl Pixels,
-    usable: Usable,
-    count: usize,
-    scale: f64,
-    scaled: Option<Coefficients>,
-    params: &Params,
-    workspace: &mut [f32],
-    out: &mut Option<Fit>,
-) -> Result<(), FitError> {
-    let degenerate = || degenerate(pixels, usable, scale);
-    let robust = scaled.ok_or_else(degenerate)?.map(|c| c * scale * scale);
-    let rejection =
-        Rejection::new(robust, count, median_residual(pixels, usable, &robust, workspace), params);
-    let inliers = Inliers { residual: rejection.band, ..Inliers::all(usable) };
-    let moments = moments(pixels, &inliers, scale);
-    rejection.refit(pixels, &inliers, &moments, scale, count, params, out).ok_or_else(degenerate)?;
-    if let (true, Some(fit)) = (ERRORS, out) {
-        covariance(&moments, scale, &robust, fit);
-        fit.pixel_noise = fit.pixel_noise.max(noise(pixels, &inliers, &fit.z(), workspace));
+impl<P: Pixels> Problem<'_, P> {
+    /// Puts the fit that follows from the `scaled` z into `out`: rejection, and the reweighted fit to what is left. Its covariance
+    /// and the noise of single pixels are there if `ERRORS`; without, the one is zero and the other what rounding makes.
+    ///
+    /// A fit is a kilobyte almost: it is made where it is to stay, and never lies on a small stack.
+    ///
+    /// # Errors
+    /// [`FitError::RankDeficient`] where no z was found, and where the pixels that are left determine none. `out` means nothing then.
+    ///
+    /// # Scratch
+    /// One `f32` a usable pixel.
+    #[inline(never)]
+    pub fn evaluate<const ERRORS: bool>(
+        &self,
+        scaled: Option<Coefficients>,
+        workspace: &mut [f32],
+        out: &mut Option<Fit>,
+    ) -> Result<(), FitError> {
+        let scaled = scaled.ok_or_else(|| self.rank_deficient())?;
+        let rejection = self.rejection(scaled.map(|c| c * self.scale * self.scale), workspace);
+        let inliers = Inliers { residual: rejection.band, ..Inliers::all(self.usable) };
+        let moments = self.moments(&inliers);
+        self.reweighted(&rejection, &inliers, &moments, out).ok_or_else(|| self.rank_deficient())?;
+        if let (true, Some(fit)) = (ERRORS, out) {
+            fit.covariance = covariance(&moments, self.scale, fit);
+            fit.pixel_noise = fit.pixel_noise.max(noise(self.pixels, &inliers, &fit.z(), workspace));
+        }
+        Ok(())
     }
-    Ok(())
-}
 
-/// What follows from the robust z alone.
-struct Rejection {
-    median_residual: f64,
-    dispersion: f64,
-    band: Band,
-}
-
-impl Rejection {
-    fn new(robust: Coefficients, count: usize, median_residual: f64, params: &Params) -> Self {
-        let dispersion = dispersion(median_residual, count, TERMS);
-        let band = match params.method {
-            Method::LeastMedian => Band::residual(robust, dispersion, params.rejection),
+    /// What follows from the robust z alone.
+    fn rejection(&self, robust: Coefficients, workspace: &mut [f32]) -> Rejection {
+        let median_residual = self.median_residual(&robust, workspace);
+        let dispersion = dispersion(median_residual, self.count, TERMS);
+        let band = match self.params.method {
+            Method::LeastMedian => Band::residual(robust, dispersion, self.params.rejection),
             Method::LeastSquares => Band { form: robust, ..Band::EVERYTHING },
         };
-        Self { median_residual, dispersion, band }
+        Rejection { median_residual, dispersion, band }
     }
 
-    /// The fit to the inliers, but for its covariance; `None` where they determine none.
+    /// The median absolute residual of the usable pixels.
     #[inline(never)]
-    #[expect(clippy::too_many_arguments, reason = "as above")]
-    fn refit(
+    fn median_residual(&self, z: &Coefficients, workspace: &mut [f32]) -> f64 {
+        let residual = |r, g, b| fabs(quadratic_form(z, r, g, b) - 1.0);
+        let residuals = self.pixels.gather(Inliers::all(self.usable).selector(), workspace, residual);
+        kth_smallest(residuals, median_rank(residuals.len())).map_or(0.0, f64::from)
+    }
+
+    /// The fit to the inliers, whose moments are given, but for what its errors are; `None` where they determine none.
+    #[inline(never)]
+    fn reweighted(
         &self,
-        pixels: &impl Pixels,
+        rejection: &Rejection,
         inliers: &Inliers,
         moments: &Moments,
-        scale: f64,
-        count: usize,
-        params: &Params,
         out: &mut Option<Fit>,
     ) -> Option<()> {
-        let refit = reweighted(pixels, inliers, moments, scale, params.limits_confidence);
-        self.finish(refit.as_ref()?, count, params, out);
+        let refit = self.refit(inliers, moments);
+        self.finish(rejection, refit.as_ref()?, out);
         Some(())
     }
 
-    /// The whole fit, where it is wanted.
     #[inline(never)]
-    fn finish(&self, refit: &Refit, count: usize, params: &Params, out: &mut Option<Fit>) {
+    fn finish(&self, rejection: &Rejection, refit: &Refit, out: &mut Option<Fit>) {
         *out = Some(Fit {
-            robust: self.band.form,
-            median_residual: self.median_residual,
-            dispersion: self.dispersion,
-            r_squared: 1.0 - self.median_residual * self.median_residual,
-            band: self.band,
+            robust: rejection.band.form,
+            median_residual: rejection.median_residual,
+            dispersion: rejection.dispersion,
+            r_squared: 1.0 - rejection.median_residual * rejection.median_residual,
+            band: rejection.band,
             coefficients: refit.coefficients,
             covariance: [0.0; 21],
             residual_deviation: refit.residual_deviation,
@@ -92,27 +91,26 @@ impl Rejection {
             noise_deviation: refit.noise_deviation,
             pixel_noise: refit.pixel_noise,
             degenerate_noise_deviation: refit.degenerate_noise_deviation,
-            usable: count,
+            usable: self.count,
             inliers: refit.count as usize,
-            subsets: match params.method {
-                Method::LeastMedian => params.subset_count().unwrap_or(0),
+            subsets: match self.params.method {
+                Method::LeastMedian => self.params.subset_count().unwrap_or(0),
                 Method::LeastSquares => 0,
             },
         });
     }
+
+    /// The error where the usable pixels determine no z.
+    #[inline(never)]
+    fn rank_deficient(&self) -> FitError {
+        let moments = self.moments(&Inliers::all(self.usable));
+        FitError::RankDeficient { color_deviations: deviations(&moments, self.scale) }
+    }
 }
 
-/// The error where the usable pixels determine no z.
-#[inline(never)]
-fn degenerate(pixels: &impl Pixels, usable: Usable, scale: f64) -> FitError {
-    let moments = moments(pixels, &Inliers::all(usable), scale);
-    FitError::RankDeficient { color_deviations: deviations(&moments, scale) }
-}
-
-/// The median absolute residual of the usable pixels.
-#[inline(never)]
-fn median_residual(pixels: &impl Pixels, usable: Usable, z: &Coefficients, workspace: &mut [f32]) -> f64 {
-    let residuals = pixels
-        .gather(Inliers::all(usable).selector(), workspace, |r, g, b| fabs(quadratic_form(z, r, g, b) - 1.0));
-    kth_smallest(residuals, median_rank(residuals.len())).map_or(0.0, f64::from)
+/// Which residuals are too large, and the numbers that this follows from.
+struct Rejection {
+    median_residual: f64,
+    dispersion: f64,
+    band: Band,
 }

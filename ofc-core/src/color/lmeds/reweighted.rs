@@ -1,73 +1,107 @@
 //! Least squares over the inliers, and what it says of itself.
 
-use super::{Fit, MIN_PIXELS};
+use super::params::MIN_PIXELS;
+use super::problem::Problem;
+use super::result::Fit;
 use crate::color::ellipsoid::{Coefficients, quadratic_form};
 use crate::color::inliers::Inliers;
-use crate::color::regression::{self, Estimate, LeastSquares, Moments, TERMS};
+use crate::color::regression::{self, Estimate, LeastSquares, Moments, TERMS, Triangle};
+use crate::color::rounding;
 use crate::math::mat3::symmetric_eigen;
-use crate::picture::Pixels;
-use crate::picture::{Usable, for_each_bit};
+use crate::picture::{Pixels, for_each_bit};
 use libm::{fabsf, sqrt};
 
-/// The scaled z of all usable pixels.
-#[inline(never)]
-pub(crate) fn least_squares(pixels: &impl Pixels, usable: Usable, scale: f64) -> Option<Coefficients> {
-    moments(pixels, &Inliers::all(usable), scale).solve().map(|fit| fit.coefficients)
-}
+impl<P: Pixels> Problem<'_, P> {
+    /// The scaled z of all usable pixels by least squares; `None` where they determine none.
+    #[inline(never)]
+    pub fn least_squares(&self) -> Option<Coefficients> {
+        self.moments(&Inliers::all(self.usable)).solve().map(|fit| fit.coefficients)
+    }
 
-/// The sums over the inliers' scaled colors.
-#[inline(never)]
-pub(super) fn moments(pixels: &impl Pixels, inliers: &Inliers, scale: f64) -> Moments {
-    let mut moments = Moments::default();
-    pixels.for_each_window(|window| {
-        let mut sums = Moments::default();
-        for_each_bit(inliers.bits(window), |i| sums.add(window.pixel(i).map(|c| f64::from(c) * scale)));
-        moments.merge(&sums);
-    });
-    moments
-}
-
-/// Rounding to whole steps is noise of this many steps: 1 / sqrt(12).
-const ROUNDING: f64 = 0.288_675_134_594_812_9;
-
-/// The smallest difference in a channel between an inlier and the one before it, other than none: how finely the
-/// picture is quantised, whatever the type of its pixels. Zero when there are no differences.
-#[inline(never)]
-fn smallest_step(pixels: &impl Pixels, inliers: &Inliers) -> f64 {
-    let mut smallest = f32::INFINITY;
-    let mut previous = None;
-    pixels.for_each_window(|window| {
-        for_each_bit(inliers.bits(window), |i| {
-            let pixel = window.pixel(i);
-            for (now, before) in pixel.into_iter().zip(previous.unwrap_or(pixel)) {
-                let step = fabsf(now - before);
-                if step > 0.0 && step < smallest {
-                    smallest = step;
-                }
-            }
-            previous = Some(pixel);
+    /// The sums over the inliers' scaled colors.
+    #[inline(never)]
+    pub(super) fn moments(&self, inliers: &Inliers) -> Moments {
+        let mut moments = Moments::default();
+        self.pixels.for_each_window(|window| {
+            let mut sums = Moments::default();
+            for_each_bit(inliers.bits(window), |i| {
+                sums.add(window.pixel(i).map(|c| f64::from(c) * self.scale));
+            });
+            moments.merge(&sums);
         });
-    });
-    if smallest.is_finite() { f64::from(smallest) } else { 0.0 }
+        moments
+    }
+
+    /// The least-squares fit to the inliers, whose moments are given, with its statistics, in pixel values; `None` where they
+    /// determine none.
+    #[inline(never)]
+    pub(super) fn refit(&self, inliers: &Inliers, moments: &Moments) -> Option<Refit> {
+        let fit = moments.solve();
+        let fit = fit.as_ref()?;
+        let scale = self.scale;
+        let residual_sum = self.residual_sum(inliers, &fit.coefficients.map(|c| c * (scale * scale)));
+        let rounding = self.smallest_step(inliers) * rounding::DEVIATION;
+        Refit::new(moments, fit, scale, self.params.limits_confidence, residual_sum, rounding)
+    }
+
+    /// The smallest difference in a channel between an inlier and the one before it, other than none: how finely the
+    /// picture is quantised, whatever the type of its pixels. Zero when there are no differences.
+    #[inline(never)]
+    fn smallest_step(&self, inliers: &Inliers) -> f64 {
+        let mut smallest = f32::INFINITY;
+        let mut previous = None;
+        self.pixels.for_each_window(|window| {
+            for_each_bit(inliers.bits(window), |i| {
+                let pixel = window.pixel(i);
+                for (now, before) in pixel.into_iter().zip(previous.unwrap_or(pixel)) {
+                    let step = fabsf(now - before);
+                    if step > 0.0 && step < smallest {
+                        smallest = step;
+                    }
+                }
+                previous = Some(pixel);
+            });
+        });
+        if smallest.is_finite() { f64::from(smallest) } else { 0.0 }
+    }
+
+    /// The sum of the squared residuals of the inliers.
+    #[inline(never)]
+    fn residual_sum(&self, inliers: &Inliers, z: &Coefficients) -> f64 {
+        let mut residual_sum = 0.0;
+        self.pixels.for_each_window(|window| {
+            let mut sum = 0.0;
+            for_each_bit(inliers.bits(window), |i| {
+                let [r, g, b] = window.pixel(i);
+                let residual = quadratic_form(z, r, g, b) - 1.0;
+                sum += residual * residual;
+            });
+            residual_sum += sum;
+        });
+        residual_sum
+    }
 }
 
+/// The root mean squares of colors along their principal axes, from the sums of them times `scale`, in pixel values.
 #[inline(never)]
 pub(super) fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
     symmetric_eigen(&moments.second_moments()).values.map(|square| sqrt(square.max(0.0)) / scale)
 }
 
-/// The expected squares and products of the errors of a fit made of these sums of colors times `scale`. Its inliers are those
-/// of another `form`, which pulls it: as much as the two differ may be left of that form's error.
+/// The expected squares and products of the errors of a fit made of these sums of colors times `scale`. Its inliers are those of
+/// its robust form, which pulls it: as much as the two differ may be left of that form's error.
 #[inline(never)]
-pub(super) fn covariance(moments: &Moments, scale: f64, form: &Coefficients, fit: &mut Fit) {
-    let Some(solved) = moments.solve() else { return };
+pub(super) fn covariance(moments: &Moments, scale: f64, fit: &Fit) -> Triangle {
+    let Some(solved) = moments.solve() else { return [0.0; 21] };
     let variance = fit.residual_deviation * fit.residual_deviation;
-    fit.covariance = moments.error_covariance(&solved, variance, fit.noise_deviation * scale, scale * scale);
-    let mut difference = *form;
+    let mut covariance =
+        moments.error_covariance(&solved, variance, fit.noise_deviation * scale, scale * scale);
+    let mut difference = fit.robust;
     for (entry, estimate) in difference.iter_mut().zip(&fit.coefficients) {
         *entry -= estimate.value;
     }
-    regression::add_square(&mut fit.covariance, &difference);
+    regression::add_square(&mut covariance, &difference);
+    covariance
 }
 
 /// Least squares over inliers.
@@ -121,36 +155,4 @@ impl Refit {
             count: moments.count,
         })
     }
-}
-
-/// The least-squares fit to the inliers, which are these moments, with its statistics, in pixel values.
-#[inline(never)]
-pub(super) fn reweighted(
-    pixels: &impl Pixels,
-    inliers: &Inliers,
-    moments: &Moments,
-    scale: f64,
-    confidence: f64,
-) -> Option<Refit> {
-    let fit = moments.solve();
-    let fit = fit.as_ref()?;
-    let residual_sum = residual_sum(pixels, inliers, &fit.coefficients.map(|c| c * (scale * scale)));
-    let rounding = smallest_step(pixels, inliers) * ROUNDING;
-    Refit::new(moments, fit, scale, confidence, residual_sum, rounding)
-}
-
-/// The sum of the squared residuals of the inliers.
-#[inline(never)]
-fn residual_sum(pixels: &impl Pixels, inliers: &Inliers, z: &Coefficients) -> f64 {
-    let mut residual_sum = 0.0;
-    pixels.for_each_window(|window| {
-        let mut sum = 0.0;
-        for_each_bit(inliers.bits(window), |i| {
-            let [r, g, b] = window.pixel(i);
-            let residual = quadratic_form(z, r, g, b) - 1.0;
-            sum += residual * residual;
-        });
-        residual_sum += sum;
-    });
-    residual_sum
 }

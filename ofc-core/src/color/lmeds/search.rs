@@ -1,43 +1,30 @@
 //! The search: random subsets propose, the median over a sample evaluates them, concentration steps polish.
 
-use crate::color::ellipsoid::Coefficients;
+use super::problem::Problem;
+use crate::color::ellipsoid::{Coefficients, single_residual};
 use crate::color::regression::{self, Moments, TERMS};
 use crate::math::rng::Rng;
 use crate::math::select::{kth_smallest, median_rank};
-use crate::picture::{Image, Usable, for_each_bit};
+use crate::picture::{Image, for_each_bit};
 
+/// Times that the better half is fitted again, at most: measured, ten reach the smallest objective that thousands of restarts
+/// find.
 const CONCENTRATION_STEPS: usize = 10;
 
-/// The scaled z that `subsets` find among these scaled colors, channels apart; `None` when none determines one. `residuals`
-/// is room for one of each color.
-pub(crate) fn search(
-    [red, green, blue]: [&[f32]; 3],
-    residuals: &mut [f32],
-    subsets: u32,
-    rng: &mut Rng,
-) -> Option<Coefficients> {
-    Sample { red, green, blue, residuals }.best(subsets, rng)
-}
-
-/// Scaled colors of some usable pixels, channels apart, and room for a residual each.
-pub(super) struct Sample<'w> {
+/// Scaled colors of some usable pixels, channels apart, and room for a residual of each.
+pub(crate) struct Sample<'w> {
     red: &'w [f32],
     green: &'w [f32],
     blue: &'w [f32],
     residuals: &'w mut [f32],
 }
 
-impl<'w> Sample<'w> {
-    /// One pixel from each of `len` equal parts of the usable pixels in picture order, at a random place within it.
-    pub fn gather(
-        image: &Image,
-        usable: Usable,
-        available: usize,
-        len: usize,
-        scale: f64,
-        rng: &mut Rng,
-        workspace: &'w mut [f32],
-    ) -> Option<Self> {
+impl Problem<'_, Image<'_>> {
+    /// One pixel from each of equal parts of the usable pixels in picture order, at a random place within it: as many as
+    /// the parameters ask for, and all of them where there are no more. `None` where `workspace` is shorter than four `f32` for
+    /// each.
+    pub fn sample<'w>(&self, rng: &mut Rng, workspace: &'w mut [f32]) -> Option<Sample<'w>> {
+        let (available, len) = (self.count, self.count.min(self.params.sample_size as usize));
         let (red, rest) = workspace.split_at_mut_checked(len)?;
         let (green, rest) = rest.split_at_mut_checked(len)?;
         let (blue, rest) = rest.split_at_mut_checked(len)?;
@@ -48,10 +35,10 @@ impl<'w> Sample<'w> {
         };
         let (mut taken, mut seen) = (0, 0);
         let mut wanted = stratum(0);
-        image.for_each_window(|window| {
-            for_each_bit(usable.bits(window), |i| {
+        self.pixels.for_each_window(|window| {
+            for_each_bit(self.usable.bits(window), |i| {
                 if seen == wanted && taken < len {
-                    let pixel = window.pixel(i).map(|c| (f64::from(c) * scale) as f32);
+                    let pixel = window.pixel(i).map(|c| (f64::from(c) * self.scale) as f32);
                     if let (Some(r), Some(g), Some(b)) =
                         (red.get_mut(taken), green.get_mut(taken), blue.get_mut(taken))
                     {
@@ -65,7 +52,14 @@ impl<'w> Sample<'w> {
                 seen += 1;
             });
         });
-        Some(Self { red, green, blue, residuals })
+        Some(Sample { red, green, blue, residuals })
+    }
+}
+
+impl<'w> Sample<'w> {
+    /// Of these scaled colors, channels apart; `residuals` is room for one of each color.
+    pub const fn new([red, green, blue]: [&'w [f32]; 3], residuals: &'w mut [f32]) -> Self {
+        Self { red, green, blue, residuals }
     }
 
     fn len(&self) -> usize {
@@ -81,7 +75,7 @@ impl<'w> Sample<'w> {
         self.red.iter().zip(self.green).zip(self.blue).map(|((&r, &g), &b)| (r, g, b))
     }
 
-    /// The z that the search finds; `None` when no subset determines an ellipsoid.
+    /// The scaled z that `subsets` find; `None` when none of them determines one.
     pub fn best(mut self, subsets: u32, rng: &mut Rng) -> Option<Coefficients> {
         let proposal = self.search(subsets, rng)?;
         Some(self.concentrate(proposal))
@@ -141,15 +135,13 @@ impl<'w> Sample<'w> {
     }
 }
 
-/// |rho^T C rho - 1| in single precision: what the search compares. The answer's residuals are computed in double.
+/// |rho^T C rho - 1|.
 #[inline]
 fn absolute_residual(z: &[f32; TERMS], r: f32, g: f32, b: f32) -> f32 {
-    let [c11, c22, c33, c12, c13, c23] = *z;
-    let red = r * (c11 * r + 2.0 * (c12 * g + c13 * b));
-    let green = g * (c22 * g + 2.0 * c23 * b);
-    (red + green + c33 * b * b - 1.0).abs()
+    single_residual(z, [r, g, b]).abs()
 }
 
+/// A form and its median residual over the sample.
 #[derive(Clone, Copy)]
 struct Proposal {
     z: Coefficients,

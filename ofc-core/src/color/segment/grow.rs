@@ -1,24 +1,17 @@
 //! Growing one region from a seed: breadth first, with a queue that holds every pixel at most once.
 
+use super::field::{FREE, Field};
+use super::params::Params;
 use super::seed::Seed;
-use super::{FREE, Params};
-use crate::color::ellipsoid::{Coefficients, is_positive_definite};
+use crate::color::ellipsoid::{Coefficients, is_positive_definite, single_residual};
 use crate::color::regression::Moments;
 use libm::sqrt;
 
-/// At most about so many pixels of a region take part in a fit, evenly spaced in the order of growth.
+/// At most about so many pixels of a region take part in a fit, evenly spaced in the order of growth: six coefficients are as
+/// well known from these as the model holds.
 const FIT_PIXELS: usize = 8192;
-/// A region that a refit does not make larger than this many 256ths of itself is done.
+/// A region that a refit does not make larger than this many 256ths of itself is done: less than one percent.
 const GROWTH_256: usize = 258;
-
-/// The picture while it is being divided.
-pub(super) struct Field<'a> {
-    pub(super) width: usize,
-    pub(super) labels: &'a mut [u16],
-    /// Scaled so that the largest value is about 1; those of unusable pixels mean nothing.
-    pub(super) colors: &'a [[f32; 3]],
-    pub(super) queue: &'a mut [u32],
-}
 
 /// A grown region; its pixels are the first ones of the queue.
 pub(super) struct Grown {
@@ -27,74 +20,31 @@ pub(super) struct Grown {
     pub(super) residual_deviation: f64,
 }
 
-/// rho^T C rho - 1.
-#[inline]
-pub(super) fn residual(form: &[f32; 6], [r, g, b]: [f32; 3]) -> f32 {
-    let [c11, c22, c33, c12, c13, c23] = *form;
-    let red = r * (c11 * r + 2.0 * (c12 * g + c13 * b));
-    let green = g * (c22 * g + 2.0 * c23 * b);
-    red + green + c33 * b * b - 1.0
+/// The region around `seed`: grown, fitted, and grown again for as long as it becomes larger.
+pub(super) fn region(field: &mut Field, seed: &Seed, label: u16, params: &Params) -> Grown {
+    let mut form = seed.form;
+    let mut pixels = field.grow(seed.index, &form, label, params.tolerance);
+    for _ in 0..params.refits {
+        let Some(refit) = field.fit(pixels) else { break };
+        field.relabel(pixels, FREE);
+        let larger = field.grow(seed.index, &refit, label, params.tolerance);
+        // A fit that loses the region is not followed.
+        if larger < pixels {
+            field.relabel(larger, FREE);
+            pixels = field.grow(seed.index, &form, label, params.tolerance);
+            break;
+        }
+        let done = larger * 256 <= pixels * GROWTH_256;
+        (form, pixels) = (refit, larger);
+        if done {
+            break;
+        }
+    }
+    let residual_deviation = field.deviation(pixels, &form);
+    Grown { pixels, form, residual_deviation }
 }
 
 impl Field<'_> {
-    /// Label and color of a pixel; `None` outside the picture.
-    pub(super) fn at(&self, x: usize, y: usize) -> Option<(u16, [f32; 3])> {
-        if x >= self.width {
-            return None;
-        }
-        let index = y.checked_mul(self.width)?.checked_add(x)?;
-        Some((*self.labels.get(index)?, *self.colors.get(index)?))
-    }
-
-    /// Fills the queue with the free pixels, and returns how many there are.
-    pub(super) fn gather_free(&mut self) -> usize {
-        let mut count = 0;
-        for (index, &label) in self.labels.iter().enumerate() {
-            if label == FREE {
-                if let Some(slot) = self.queue.get_mut(count) {
-                    *slot = index as u32;
-                }
-                count += 1;
-            }
-        }
-        count
-    }
-
-    /// Gives the pixels of a region, the first of the queue, another label.
-    pub(super) fn relabel(&mut self, grown: &Grown, label: u16) {
-        for &index in self.queue.iter().take(grown.pixels) {
-            if let Some(slot) = self.labels.get_mut(index as usize) {
-                *slot = label;
-            }
-        }
-    }
-
-    /// The region around `seed`: grown, fitted, and grown again for as long as it becomes larger.
-    pub(super) fn region(&mut self, seed: &Seed, label: u16, params: &Params) -> Grown {
-        let mut form = seed.form;
-        let mut pixels = self.grow(seed.index, &form, label, params.tolerance);
-        for _ in 0..params.refits {
-            let Some(refit) = self.fit(pixels) else { break };
-            let before = Grown { pixels, form, residual_deviation: 0.0 };
-            self.relabel(&before, FREE);
-            let larger = self.grow(seed.index, &refit, label, params.tolerance);
-            // A fit that loses the region is not followed.
-            if larger < pixels {
-                let lost = Grown { pixels: larger, form: refit, residual_deviation: 0.0 };
-                self.relabel(&lost, FREE);
-                pixels = self.grow(seed.index, &form, label, params.tolerance);
-                break;
-            }
-            let done = larger * 256 <= pixels * GROWTH_256;
-            (form, pixels) = (refit, larger);
-            if done {
-                break;
-            }
-        }
-        let residual_deviation = self.deviation(pixels, &form);
-        Grown { pixels, form, residual_deviation }
-    }
-
     /// Labels what is connected with the pixel `start` through free pixels within the tolerance, and returns how many
     /// pixels that is; `start` itself is taken as it is.
     fn grow(&mut self, start: usize, form: &Coefficients, label: u16, tolerance: f64) -> usize {
@@ -122,7 +72,7 @@ impl Field<'_> {
             // Above the first row the index wraps around and is outside, as it is below the last.
             for neighbour in [west, east, index.wrapping_sub(width), index + width] {
                 if let (Some(&FREE), Some(&color)) = (labels.get(neighbour), colors.get(neighbour))
-                    && residual(&form, color).abs() <= tolerance
+                    && single_residual(&form, color).abs() <= tolerance
                 {
                     end = take(neighbour, labels, queue);
                 }
@@ -145,7 +95,7 @@ impl Field<'_> {
         let form = form.map(|c| c as f32);
         let (mut sum, mut count) = (0.0, 0_u32);
         for color in self.some(pixels) {
-            let residual = f64::from(residual(&form, color));
+            let residual = f64::from(single_residual(&form, color));
             sum += residual * residual;
             count += 1;
         }

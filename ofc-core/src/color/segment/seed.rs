@@ -1,8 +1,8 @@
 //! Where a region begins: of many random blocks of six pixels, the one that most pixels around agree with.
 
-use super::grow::Field;
-use super::{FREE, Params};
-use crate::color::ellipsoid::{Coefficients, is_positive_definite};
+use super::field::{FREE, Field};
+use super::params::Params;
+use crate::color::ellipsoid::{Coefficients, is_positive_definite, single_residual};
 use crate::color::regression::{self, TERMS};
 use crate::math::rng::Rng;
 
@@ -96,7 +96,7 @@ fn agreement(field: &Field, seed: &Seed, params: &Params) -> u32 {
             };
             if let Some((FREE, color)) = field.at(x, y) {
                 free += 1;
-                agree += u32::from(super::grow::residual(&form, color).abs() <= params.tolerance as f32);
+                agree += u32::from(single_residual(&form, color).abs() <= params.tolerance as f32);
             }
         }
     }

@@ -1,13 +1,11 @@
 //! Cells of a picture, what they say of its noise, and how two by two of them make the next size.
 
-use super::grid::{GRADIENTS, Grid, RESIDUALS, SIDE};
+use super::area::{Area, Parts};
+use super::constants::{CREASE, SIDE};
+use super::grid::{GRADIENTS, Grid, RESIDUALS};
 use super::moments::{Moments, NUMBERS};
-use super::windows::Area;
 use crate::math::mat3::Mat3;
 use crate::math::select::{kth_smallest, median_rank};
-
-/// Cells whose residuals are above this many times the median are creases and edges rather than noise.
-const CREASE: f32 = 4.0;
 
 /// Cells whose sums are complete.
 pub(super) struct Cells<'w> {
@@ -68,7 +66,7 @@ impl<'w> Cells<'w> {
     }
 
     /// The first and the last column and row of cells that hold inliers; `None` without any.
-    pub fn bounds(&self) -> Option<[[usize; 2]; 2]> {
+    fn bounds(&self) -> Option<[[usize; 2]; 2]> {
         let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
         for y in 0..self.height {
             for x in 0..self.width {
@@ -89,6 +87,14 @@ impl<'w> Cells<'w> {
         let [[x0, y0], [x1, y1]] = self.bounds()?;
         let pixels = |cells: usize| (cells * self.side) as u32;
         Some(Area { from: [x0, y0].map(pixels), size: [x1 + 1 - x0, y1 + 1 - y0].map(pixels) })
+    }
+
+    /// The parts of the picture, around all cells that hold an inlier; `None` where none does.
+    pub fn parts(&self) -> Option<Parts> {
+        let [[left, top], [right, bottom]] = self.bounds()?;
+        let (from, [x1, y1]) = (self.middle(left, bottom), self.middle(right, top));
+        let [x0, y0] = from;
+        Some(Parts { from, size: [x1 - x0 + 1.0, y1 - y0 + 1.0] })
     }
 
     /// Pixels along the side of a cell.

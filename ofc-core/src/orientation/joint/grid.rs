@@ -1,11 +1,10 @@
 //! Rows of a picture, four by four, summed into cells.
 
+use super::constants::{SIDE, SMALLEST_GRADIENT_COUNT, SMALLEST_RESIDUAL_COUNT};
 use super::moments::{Moments, NUMBERS, Plane};
+use super::record;
 use crate::picture::for_each_bit;
 use core::num::NonZero;
-
-/// Pixels along the side of the smallest squares.
-pub(super) const SIDE: usize = 4;
 
 /// Numbers of the residuals of a cell's smallest squares: how many they are, and the sum of their covariances.
 pub(super) const RESIDUALS: usize = 7;
@@ -16,9 +15,8 @@ pub(super) const GRADIENTS: usize = 7;
 /// Numbers of a cell while its sums are taken.
 pub(super) const SUMS: usize = NUMBERS + RESIDUALS + GRADIENTS;
 
-/// A smallest square has a gradient if this many of its 16 pixels are inliers, and residuals if that many: three are spent on
-/// the plane.
-const SMALLEST_COUNTS: [f64; 2] = [10.0, 12.0];
+/// Numbers of a cell of the smallest size and of the window that it is merged to with its neighbours.
+pub(super) const ROOM: usize = NUMBERS + record::ROOM;
 
 /// How many of the smallest squares a picture has.
 pub(super) const fn count(width: usize, height: usize) -> usize {
@@ -63,7 +61,7 @@ impl Grid {
 
     /// Numbers of the cells and the windows that they are merged to.
     pub const fn len(&self) -> usize {
-        self.count() * (NUMBERS + super::integrable::NUMBERS)
+        self.count() * ROOM
     }
 
     /// The numbers of the cells, and the sums that are only taken over the smallest ones: residuals and gradients.
@@ -177,12 +175,12 @@ impl Small {
     fn finish(sums: Moments, squares: [f64; 6]) -> Self {
         let mut small = Self { sums, residual: None, gradient: None };
         let count = sums.count();
-        if count >= SMALLEST_COUNTS[0]
+        if count >= SMALLEST_GRADIENT_COUNT
             && let Some(plane) = sums.plane()
         {
             let [[a, b, c], [d, e, f]] = plane.gradient;
             small.gradient = Some([a, b, c, d, e, f].map(|slope| count * slope));
-            if count >= SMALLEST_COUNTS[1] {
+            if count >= SMALLEST_RESIDUAL_COUNT {
                 small.residual = Some(residual(&sums, &plane, squares));
             }
         }

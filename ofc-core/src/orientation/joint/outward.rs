@@ -9,21 +9,10 @@
 //! the middle of all of the surface, by its curvature.
 
 use super::cells::Cells;
+use super::constants::{PARTS, SLOPE_NEIGHBOURS, SLOPE_WEIGHTS, SMALLEST_N3, SMALLEST_SLOPE_VARIANCE};
 use super::moments::Moments;
 use crate::math::mat3::{self, Mat3};
 use libm::sqrt;
-
-/// The picture is cut into so many parts along each side.
-pub(super) const PARTS: usize = 5;
-
-/// Parts are not independent: neighbours bulge together.
-const NEIGHBOURS: f64 = 1.5;
-
-/// Weights that are tried, of one kind of slopes against the other.
-const WEIGHTS: usize = 11;
-
-/// Parts whose normals are further from the camera than this (about 84 degrees) say nothing about slopes.
-const SMALLEST_N3: f64 = 0.1;
 
 /// Slopes of N over x and y, and the variance of their components.
 #[derive(Clone, Copy, Debug)]
@@ -64,9 +53,8 @@ impl Slopes {
             sum += values().map(|value| (value - mean) * (value - mean)).sum::<f64>();
             *slot = component(&whole, i);
         }
-        let variance = NEIGHBOURS * sum * (used - 1) as f64 / used as f64 / 6.0;
-        // Nothing is more certain than this.
-        Some(Self { along, variance: variance.max(1e-6 * size * size) })
+        let variance = SLOPE_NEIGHBOURS * sum * (used - 1) as f64 / used as f64 / 6.0;
+        Some(Self { along, variance: variance.max(SMALLEST_SLOPE_VARIANCE * size * size) })
     }
 
     /// The negative log likelihood that slopes in the frame of `rows` are kappa (1, 0, -kappa `x0`) and
@@ -101,44 +89,11 @@ struct Part {
     normal: [f32; 3],
 }
 
-/// The parts of a picture: where the inliers lie, cut into [`PARTS`] by [`PARTS`].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Parts {
-    /// Left and lower border.
-    pub from: [f64; 2],
-    /// Width and height.
-    pub size: [f64; 2],
-}
-
-impl Parts {
-    /// Around all cells that hold an inlier; `None` where none does.
-    pub fn around(cells: &Cells) -> Option<Self> {
-        let [[left, top], [right, bottom]] = cells.bounds()?;
-        let (from, [x1, y1]) = (cells.middle(left, bottom), cells.middle(right, top));
-        let [x0, y0] = from;
-        Some(Self { from, size: [x1 - x0 + 1.0, y1 - y0 + 1.0] })
-    }
-
-    /// The part that a position lies in.
-    pub fn of(&self, [x, y]: [f64; 2]) -> usize {
-        let ([x0, y0], [width, height]) = (self.from, self.size);
-        let index = |at: f64, from: f64, size: f64| {
-            (1..PARTS).filter(|&border| (at - from) * PARTS as f64 >= border as f64 * size).count()
-        };
-        index(y, y0, height) * PARTS + index(x, x0, width)
-    }
-
-    fn middle(&self) -> [f64; 2] {
-        let ([x0, y0], [width, height]) = (self.from, self.size);
-        [x0 + 0.5 * width, y0 + 0.5 * height]
-    }
-}
-
 impl Outward {
     /// From cells and what lies behind them, where the mean position of the whole surface is `whole`; `None` where there
     /// are too few.
     pub fn of(cells: &Cells, rest: &[f32], whole: [f64; 2]) -> Option<Self> {
-        let parts = Parts::around(cells)?;
+        let parts = cells.parts()?;
         let [x0, y0] = parts.middle();
         let mut moments = [Moments::default(); PARTS * PARTS];
         let mut gradients = [[[0.0; 3]; 2]; PARTS * PARTS];
@@ -174,8 +129,8 @@ impl Outward {
         let both = pair(PARTS * PARTS)?;
         let size = size(total.plane()?.gradient);
         let mut slopes: Option<Slopes> = None;
-        for i in 0..WEIGHTS {
-            let weight = i as f64 / (WEIGHTS - 1) as f64;
+        for i in 0..SLOPE_WEIGHTS {
+            let weight = i as f64 / (SLOPE_WEIGHTS - 1) as f64;
             let mixed = Slopes::jackknife(both, &left_out, weight, size)?;
             if slopes.is_none_or(|least| mixed.variance < least.variance) {
                 slopes = Some(mixed);
@@ -240,7 +195,7 @@ fn all_but(parts: &[Moments], left_out: usize) -> Moments {
     total
 }
 
-/// The same of gradients.
+/// The sums of gradients over all parts but one.
 fn sum_but(parts: &[[[f64; 3]; 2]], left_out: usize) -> [[f64; 3]; 2] {
     let mut total = [[0.0; 3]; 2];
     for (_, sums) in parts.iter().enumerate().filter(|(i, _)| *i != left_out) {

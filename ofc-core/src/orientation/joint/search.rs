@@ -1,18 +1,11 @@
 //! Minima over rotations.
 
-use super::APART;
+use super::constants::{
+    APART, EVALUATIONS, FOLLOWED, START_DIRECTION, START_SHEAR, START_TIP, START_TURN, STARTS, STEP,
+};
 use crate::math::mat3::{self, Mat3};
 use crate::orientation::orthogonal::polish::{polish, rotation};
 use libm::acos;
-
-/// Rotations that every search starts from: 60, spread over all of them, after two of the caller's own.
-const STARTS: usize = 62;
-
-/// Starts that are followed to their minimum.
-const FOLLOWED: usize = 8;
-
-/// Times that each of them may compute the cost.
-const EVALUATIONS: u32 = 240;
 
 /// The best minimum, and how much higher the next one is that lies elsewhere.
 #[derive(Clone, Copy, Debug)]
@@ -26,9 +19,9 @@ pub(super) struct Minimum {
 fn start(i: usize) -> Mat3 {
     let (turn, rest) = ((i % 5) as f64, i / 5);
     let (tip, toward) = ((rest % 3) as f64, (rest / 3) as f64);
-    let about = rotation([0.0, 0.0, 1.256 * turn]);
-    let tipped = rotation([0.7 * tip, 0.0, 0.0]);
-    let direction = rotation([0.0, 0.0, 1.57 * toward + 0.3 * tip]);
+    let about = rotation([0.0, 0.0, START_TURN * turn]);
+    let tipped = rotation([START_TIP * tip, 0.0, 0.0]);
+    let direction = rotation([0.0, 0.0, START_DIRECTION * toward + START_SHEAR * tip]);
     mat3::multiply(&mat3::multiply(&about, &tipped), &direction)
 }
 
@@ -90,8 +83,6 @@ pub(super) fn hessian(rows: &Mat3, cost: impl Fn(&Mat3) -> f64) -> Mat3 {
 /// First and second derivatives.
 #[inline(never)]
 pub(super) fn derivatives(rows: &Mat3, cost: impl Fn(&Mat3) -> f64) -> ([f64; 3], Mat3) {
-    /// The angle of the differences.
-    const STEP: f64 = 2e-3;
     let at = |turn: [f64; 3]| cost(&mat3::multiply(&rotation(turn), rows));
     let here = cost(rows);
     let axes = [[STEP, 0.0, 0.0], [0.0, STEP, 0.0], [0.0, 0.0, STEP]];

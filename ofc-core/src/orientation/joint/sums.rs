@@ -1,10 +1,14 @@
 //! From the rows of a picture to the orientation, in one pass or in two.
 
+use super::area::Area;
 use super::cells::Cells;
-use super::grid::{self, Grid, SIDE};
+use super::constants::{FEWEST_CELLS, SIDE, WINDOW_SIZES};
+use super::grid::{self, Grid};
 use super::outward::Outward;
-use super::windows::{Area, Windows};
-use super::{Estimate, Joint, WINDOW_SIZES, integrable};
+use super::record::{self, Record, Records};
+use super::result::Joint;
+use super::scales::Estimate;
+use super::windows::Windows;
 use crate::color::inliers::Inliers;
 use crate::math::mat3::{self, Mat3};
 use crate::picture::Image;
@@ -14,10 +18,8 @@ pub(crate) const STRIP: usize = SIDE;
 
 /// How many `f32` rows are summed into, at least, where they are too many for cells of four pixels.
 pub(crate) const fn least_room(width: usize, height: usize) -> usize {
-    /// Sixteen by twelve, for pictures of that shape.
-    const FEWEST: usize = 192;
     let count = grid::count(width, height);
-    grid::SUMS * if count < FEWEST { count } else { FEWEST }
+    grid::SUMS * if count < FEWEST_CELLS { count } else { FEWEST_CELLS }
 }
 
 /// Sums over the rows of a picture, four by four: all that its orientation is found from where there is room for cells of
@@ -66,7 +68,8 @@ impl CellSums {
         Some((cells, rest, outward, noise))
     }
 
-    /// As [`super::estimate`], from the sums in the first of these numbers; `None` also where there was not room enough.
+    /// The transformation, from the sums in the first of these numbers; `None` where there are too few inliers, or was not room
+    /// enough.
     #[inline(never)]
     pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
         if !self.grid.is_fine() || numbers.len() < self.grid.len() {
@@ -75,9 +78,7 @@ impl CellSums {
         let (mut cells, rest, outward, noise) = self.evidence(numbers)?;
         let mut estimate = Estimate::new(&outward, &noise);
         for _ in WINDOW_SIZES {
-            let goes_on = integrable::collect(&cells, rest)
-                // They overlap fourfold.
-                .is_none_or(|(records, scratch)| estimate.admit((records, 0.125), scratch));
+            let goes_on = collect(&cells, rest).is_none_or(|records| estimate.admit(records));
             if !goes_on || !cells.merge() {
                 break;
             }
@@ -117,7 +118,7 @@ impl WindowSums {
         Windows::new(&self.area, numbers.len())
     }
 
-    /// As [`super::estimate`], from the windows that were summed.
+    /// The transformation, from the windows that were summed; `None` where there was not room enough.
     #[inline(never)]
     pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
         let windows = self.windows(numbers);
@@ -125,15 +126,36 @@ impl WindowSums {
         let mut estimate = Estimate::new(&self.outward, &self.noise);
         for spread in windows.spreads() {
             let (own, scratch) = windows.split(spread, numbers)?;
-            let n =
-                spread.replace(own, |sums, at| integrable::record(sums, spread.size as f64, parts.of(at)));
-            let (records, _) = own.as_chunks();
-            if !estimate.admit((records.get(..n)?, spread.independent()), scratch.get_mut(..2 * n)?) {
+            let n = spread.replace(own, |sums, at| Record::of(sums, spread.size as f64, at));
+            let (numbers, scratch) = (own.as_chunks().0.get(..n)?, scratch.get_mut(..2 * n)?);
+            if !estimate.admit(Records { numbers, scratch, parts, independent: spread.independent() }) {
                 break;
             }
         }
         Some(estimate.end())
     }
+}
+
+/// The windows of two by two cells; `None` without any.
+fn collect<'r>(cells: &Cells, numbers: &'r mut [f32]) -> Option<Records<'r>> {
+    let [width, height] = cells.size();
+    let (numbers, scratch) = numbers.split_at_mut_checked(width * height * record::NUMBERS)?;
+    let (numbers, _) = numbers.as_chunks_mut();
+    let (parts, side) = (cells.parts()?, 2.0 * cells.side() as f64);
+    let mut n = 0;
+    for y in 0..height.saturating_sub(1) {
+        for x in 0..width.saturating_sub(1) {
+            if let Some(record) = Record::of(&cells.two_by_two(x, y), side, cells.middle(x, y))
+                && let Some(slot) = numbers.get_mut(n)
+            {
+                record.store(slot);
+                n += 1;
+            }
+        }
+    }
+    // One begins half a side after the other.
+    let independent = record::independent(0.5);
+    Some(Records { numbers: numbers.get(..n)?, scratch: scratch.get_mut(..2 * n)?, parts, independent })
 }
 
 /// The mean position of pixels.

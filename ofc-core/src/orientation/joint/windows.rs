@@ -1,29 +1,15 @@
 //! Windows where there is no room for all: of every size as many as there is, spread evenly over the surface.
 
-use super::integrable::RECORD;
+use super::area::Area;
+use super::constants::{SHARES, WINDOW_SIZES};
 use super::moments::{Moments, NUMBERS};
-use super::outward::Parts;
+use super::record::{self, Record};
 use crate::math::mat3::{self, Mat3};
 use crate::picture::{Window, first_bits, for_each_bit};
 use core::num::NonZero;
 
 /// Numbers of a window, and two of scratch.
 const ROOM: usize = NUMBERS + 2;
-
-/// Where the surface lies, in pixels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Area {
-    pub from: [u32; 2],
-    pub size: [u32; 2],
-}
-
-impl Area {
-    /// Its parts, for positions with x right and y up from the top left pixel.
-    pub fn parts(&self) -> Parts {
-        let ([x, y], [width, height]) = (self.from.map(f64::from), self.size.map(f64::from));
-        Parts { from: [x, 1.0 - y - height], size: [width, height] }
-    }
-}
 
 /// Windows of one size in rows and columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,8 +54,7 @@ impl Spread {
 
     /// As how many windows beside each other one of them counts.
     pub fn independent(&self) -> f64 {
-        let share = self.pitch.get() as f64 / self.size as f64;
-        0.5 * (share * share).min(1.0)
+        record::independent(self.pitch.get() as f64 / self.size as f64)
     }
 
     /// The pixel in the top left corner.
@@ -117,7 +102,7 @@ impl Spread {
     pub fn replace(
         &self,
         numbers: &mut [f32],
-        record: impl Fn(&Moments, [f64; 2]) -> Option<[f32; RECORD]>,
+        record: impl Fn(&Moments, [f64; 2]) -> Option<Record>,
     ) -> usize {
         let (mut n, half) = (0, 0.5 * (self.size as f64 - 1.0));
         let places = (0..self.rows).flat_map(|row| (0..self.columns).map(move |column| (column, row)));
@@ -126,9 +111,9 @@ impl Spread {
             let [x, y] = self.corner(column, row).map(|at| at as f64);
             if let Some(sums) = read
                 && let Some(made) = record(&sums, [x + half, -y - half])
-                && let Some(out) = numbers.get_mut(n * RECORD..).and_then(<[f32]>::first_chunk_mut)
+                && let Some(out) = numbers.get_mut(n * record::NUMBERS..).and_then(<[f32]>::first_chunk_mut)
             {
-                *out = made;
+                made.store(out);
                 n += 1;
             }
         }
@@ -144,19 +129,18 @@ const fn among(x: usize, left: usize, size: usize) -> u64 {
 /// Windows of all sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Windows {
-    spreads: [Spread; super::WINDOW_SIZES.len()],
+    spreads: [Spread; WINDOW_SIZES.len()],
 }
 
 impl Windows {
     /// In an area, as many as `numbers` have room for.
     pub fn new(area: &Area, numbers: usize) -> Self {
         let most = numbers / ROOM;
-        let [a, b, c, d] = super::WINDOW_SIZES;
-        // There are the more of them the smaller they are.
-        let spread = |size, share, first| Spread::new(size, area, share, first);
-        let d = spread(d, most / 8, 0);
-        let c = spread(c, most / 6, d.count());
-        let b = spread(b, most / 4, c.first + c.count());
+        let ([a, b, c, d], [of_d, of_c, of_b]) = (WINDOW_SIZES, SHARES);
+        let spread = |size, most, first| Spread::new(size, area, most, first);
+        let d = spread(d, most / of_d, 0);
+        let c = spread(c, most / of_c, d.count());
+        let b = spread(b, most / of_b, c.first + c.count());
         let first = b.first + b.count();
         let a = spread(a, most - first, first);
         Self { spreads: [a, b, c, d] }

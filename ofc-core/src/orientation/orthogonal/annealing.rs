@@ -11,9 +11,11 @@
 //! color images", J. Opt. Soc. Am. A 11, 1994. S. Kirkpatrick et al., "Optimization by simulated annealing", 1983. Random
 //! rotations: K. Shoemake, "Uniform random rotations", Graphics Gems III, 1992.
 
+use super::closed_form::POLISH_EVALUATIONS;
 use super::polish::{polish, rotation};
+use super::problem::Problem;
+use super::result::{Found, OrthogonalError};
 use super::sample::{CELL, Sample};
-use super::{Found, OrthogonalError, Problem};
 use crate::math::angle::sincos;
 use crate::math::mat3::{self, Mat3};
 use crate::math::rng::Rng;
@@ -53,7 +55,7 @@ impl Default for Params {
             sample_cells: 2000,
             temperatures: [1.0, 0.01],
             angles: [2.0, 0.02],
-            polish_evaluations: super::closed_form::POLISH_EVALUATIONS,
+            polish_evaluations: POLISH_EVALUATIONS,
             seed: 0,
         }
     }

@@ -22,8 +22,9 @@
 //! Sections 2.3-2.4, eqs. 15-16. \[15\]: M. S. Drew, L. L. Kontsevich, "Closed-form attitude determination under spectrally
 //! varying illumination", CVPR 1994.
 
+use super::problem::Problem;
+use super::result::{Found, OrthogonalError};
 use super::sample::for_each_cell;
-use super::{Found, OrthogonalError, Problem, unit};
 use crate::math::angle::sincos;
 use crate::math::mat3::{self, Mat3};
 use crate::orientation::integrability::SMALLEST_N3;
@@ -166,4 +167,10 @@ fn remaining_angle(
         [c * u1 + s * v1, c * u2 + s * v2, c * u3 + s * v3]
     };
     Some([combine(c, s), mat3::scale(combine(-s, c), sign), r3])
+}
+
+/// A unit vector along `v`; `None` when it has no direction.
+fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
+    let length = sqrt(mat3::dot(v, v));
+    (length > 0.0 && length.is_finite()).then(|| mat3::scale(v, 1.0 / length))
 }

@@ -10,7 +10,8 @@
 //! # Reference
 //! Section 3.3: "one could ... minimize (15) subject to having knowledge of the tilts".
 
-use super::OrthogonalError;
+use super::annealing;
+use super::result::OrthogonalError;
 use super::sample::{CELL, Sample};
 use crate::light::constrained_slant::{self, NearestSlants};
 use crate::math::mat3::{IDENTITY, Mat3};
@@ -60,7 +61,7 @@ pub struct TiltIntegrability {
 /// How many `f32` [`tilts_given`] uses for a picture of `pixels` pixels.
 #[must_use]
 pub const fn workspace_len(pixels: usize, sample_cells: u32) -> usize {
-    super::annealing::workspace_len(pixels, sample_cells)
+    annealing::workspace_len(pixels, sample_cells)
 }
 
 /// The slants for which the normals of the pixels that `inliers` gives the bits of are most integrable.
