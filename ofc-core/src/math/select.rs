@@ -51,7 +51,7 @@ pub fn kth_smallest(values: &[f32], rank: usize) -> Option<f32> {
     Some(from_key(prefix))
 }
 
-/// The rank of the median that least median of squares minimises: `h = floor(n / 2) + 1` of `n` values are at or
+/// The rank of the median that least median of squares minimizes: `h = floor(n / 2) + 1` of `n` values are at or
 /// below it (Rousseeuw and Leroy, chapter 3, without the correction for the number of coefficients).
 #[must_use]
 pub const fn median_rank(count: usize) -> usize {

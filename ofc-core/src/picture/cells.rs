@@ -1,10 +1,10 @@
-//! Squares of four neighbouring pixels, the stencil of every finite difference in the pipeline.
+//! Squares of four neighboring pixels, the stencil of every finite difference in the pipeline.
 
 use crate::picture::{Image, WINDOW, Window};
 
 /// Two windows of the rows `y` and `y + 1`, and which pixels of them are inliers.
 ///
-/// Pixel `i` of both rows and the next one, `i + 1`, make cell `i`. The windows of neighbouring blocks overlap by one
+/// Pixel `i` of both rows and the next one, `i + 1`, make cell `i`. The windows of neighboring blocks overlap by one
 /// column, so every cell belongs to exactly one block; the last row and column begin no cell, but their pairs along the
 /// border are in a block too.
 pub struct Block {
@@ -73,7 +73,7 @@ pub fn for_each_block(image: &Image, inliers: impl Fn(&Window) -> u64, mut visit
     }
 }
 
-/// Visits the blocks of two neighbouring rows `width` pixels wide. `read` gives the pixels from a column on, of the upper
+/// Visits the blocks of two neighboring rows `width` pixels wide. `read` gives the pixels from a column on, of the upper
 /// row, 0, or the lower one, 1; `block` is where they are put.
 pub fn for_each_block_of_rows(
     width: usize,

@@ -29,7 +29,7 @@ impl Face {
 /// The faces of the cone, as many as there are shadows of different lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Faces {
-    /// Those that are not there are zero: every color is above them.
+    /// Faces that are not there are zero: every color is above them.
     pub faces: [Face; MAX_FACES],
 }
 

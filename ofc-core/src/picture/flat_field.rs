@@ -1,4 +1,4 @@
-//! Flat-fielding: a picture divided by that of the same flat, uniform surface without the object.
+//! Flat-fielding: a picture divided by a picture of the same flat, uniform surface without the object.
 //!
 //! Near lights fall off across the field, each channel's in its own way, so that F changes from place to place. A flat surface
 //! shows by how much: divided by it, and scaled by its mean, the picture is as under distant lights.
@@ -33,8 +33,8 @@ pub enum FlatFieldError {
 }
 
 /// Writes the divided picture as r, g, b, in the picture's own pixel values; NaN where the background, or the picture by
-/// being saturated, says nothing. Pixels that are not finite stay so. Masks are those of the views: outside the background's
-/// nothing counts, outside the picture's there are values all the same.
+/// being saturated, says nothing. Pixels that are not finite stay so. Both views may have masks: pixels outside the background's
+/// mask count for nothing, and pixels outside the picture's mask have values all the same.
 ///
 /// # Shape
 /// `pixels` is height rows of width times three `f32`, rows `row_stride` `f32` apart; what lies between rows is left alone.

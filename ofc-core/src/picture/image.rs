@@ -28,7 +28,7 @@ impl<'a> Image<'a> {
     /// A view of interleaved pixels, rows `row_stride` bytes apart.
     ///
     /// # Errors
-    /// As [`span`], and [`ImageError::TooShort`] when `bytes` ends before the last pixel.
+    /// What [`span`] refuses, and [`ImageError::TooShort`] when `bytes` ends before the last pixel.
     pub fn interleaved(
         bytes: &'a [u8],
         width: usize,
@@ -48,7 +48,7 @@ impl<'a> Image<'a> {
     /// lights.
     ///
     /// # Errors
-    /// As [`span`], and [`ImageError::TooShort`] when a plane ends before its last pixel.
+    /// What [`span`] refuses, and [`ImageError::TooShort`] when a plane ends before its last pixel.
     pub fn planes(
         planes: [&'a [u8]; 3],
         width: usize,
@@ -67,7 +67,7 @@ impl<'a> Image<'a> {
     /// The same picture restricted to the pixels where `mask`, tightly packed or strided, is not zero.
     ///
     /// # Errors
-    /// As [`Mask::new`].
+    /// What [`Mask::new`] refuses.
     pub fn with_mask(self, bytes: &'a [u8], row_stride: usize) -> Result<Self, ImageError> {
         Ok(Self { mask: Some(Mask::new(bytes, self.width, self.height, row_stride)?), ..self })
     }

@@ -13,7 +13,7 @@ impl<'a> Mask<'a> {
     /// A view of `width` x `height` bytes, rows `row_stride` bytes apart.
     ///
     /// # Errors
-    /// As [`span`], and [`ImageError::TooShort`].
+    /// What [`span`] refuses, and [`ImageError::TooShort`] when `bytes` ends before the last pixel.
     pub fn new(bytes: &'a [u8], width: usize, height: usize, row_stride: usize) -> Result<Self, ImageError> {
         let need = span(width, height, 1, row_stride)?;
         let bytes = bytes.get(..need).ok_or(ImageError::TooShort)?;

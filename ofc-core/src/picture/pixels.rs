@@ -39,7 +39,7 @@ pub trait Pixels {
         out.get_mut(..count).unwrap_or_default()
     }
 
-    /// The sum of the squared second differences along rows of neighbouring selected pixels, over the three channels, and
+    /// The sum of the squared second differences along rows of neighboring selected pixels, over the three channels, and
     /// how many triples of pixels it is a sum over.
     fn second_differences(&self, selected: impl Fn(&Window) -> u64) -> (f64, u64) {
         sum_second_differences(self, selected)

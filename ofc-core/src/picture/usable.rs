@@ -14,7 +14,7 @@ pub struct Usable {
 }
 
 impl Usable {
-    /// Without shadows.
+    /// Pixels below this saturation, none of them left out as shaded.
     #[must_use]
     pub const fn below(saturation: f32) -> Self {
         Self { saturation, shadow_faces: Faces::NONE }
@@ -26,7 +26,7 @@ impl Usable {
         self.shadow_faces.lit(window, self.exposed(window))
     }
 
-    /// Those with shaded ones among them.
+    /// The bits of `window`'s pixels that are usable but for shadows.
     #[must_use]
     #[inline(never)]
     pub fn exposed(&self, window: &Window) -> u64 {
@@ -54,7 +54,7 @@ impl Usable {
         pixel_counts
     }
 
-    /// Adds the pixels of one window to a counts, and returns the bits of the usable ones.
+    /// Adds the pixels of one window to the counts, and returns the bits of the usable ones.
     pub fn count_window(&self, window: &Window, pixel_counts: &mut PixelCounts) -> u64 {
         let usable = self.bits(window);
         pixel_counts.usable += usable.count_ones() as usize;

@@ -1,9 +1,9 @@
-//! Up to 64 neighbouring pixels at a time, and sets of them as bits.
+//! Up to 64 neighboring pixels at a time, and sets of them as bits.
 
 /// Pixels read at a time, one bit of a [`Window`]'s masks each.
 pub const WINDOW: usize = u64::BITS as usize;
 
-/// Up to [`WINDOW`] neighbouring pixels of one row, channels apart, with a bit a pixel for sets of them.
+/// Up to [`WINDOW`] neighboring pixels of one row, channels apart, with a bit a pixel for sets of them.
 #[derive(Clone, Debug)]
 pub struct Window {
     /// Column of the first pixel.

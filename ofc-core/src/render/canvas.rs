@@ -22,7 +22,7 @@ impl<'a> Canvas<'a> {
     /// A view of `width` x `height` pixels.
     ///
     /// # Errors
-    /// As [`span`], and [`ImageError::TooShort`] when `bytes` ends before the last pixel.
+    /// What [`span`] refuses, and [`ImageError::TooShort`] when `bytes` ends before the last pixel.
     pub fn new(
         bytes: &'a mut [u8],
         width: usize,

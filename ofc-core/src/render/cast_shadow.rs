@@ -161,7 +161,7 @@ impl Path {
 
     /// The pixel across before the ray after `step` steps, and how far the ray is beyond it.
     const fn across(&self, step: usize) -> (usize, f64) {
-        // In two's complement a product's low bits are those of the signed one.
+        // In two's complement the low bits of a product are the same with a sign and without.
         let across = self.across.wrapping_add((step as u64).wrapping_mul(self.across_step.cast_unsigned()));
         ((across >> FRACTION_BITS) as usize, (across & (FRACTION - 1)) as f64 * (1.0 / FRACTION as f64))
     }

@@ -25,7 +25,7 @@ impl From<ImageError> for DepthMapError {
 /// `width` x `height`, row 0 at the top, rows `row_stride` bytes apart.
 ///
 /// # Units
-/// Depth grows toward the camera and has the unit of `pitch`, the distance between neighbouring pixels. There is no surface
+/// Depth grows toward the camera and has the unit of `pitch`, the distance between neighboring pixels. There is no surface
 /// where the depth is not finite.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthMap<'a> {
@@ -41,7 +41,7 @@ impl<'a> DepthMap<'a> {
     /// A view of `width` x `height` depths.
     ///
     /// # Errors
-    /// As [`span`], [`ImageError::TooShort`], and [`DepthMapError::Pitch`].
+    /// What [`span`] refuses, [`ImageError::TooShort`] when `bytes` ends before the last depth, and [`DepthMapError::Pitch`].
     pub fn new(
         bytes: &'a [u8],
         width: usize,
@@ -60,7 +60,7 @@ impl<'a> DepthMap<'a> {
     /// The same surface restricted to the pixels where `mask` is not zero; depths elsewhere are never looked at.
     ///
     /// # Errors
-    /// As [`Mask::new`].
+    /// What [`Mask::new`] refuses.
     pub fn with_mask(self, bytes: &'a [u8], row_stride: usize) -> Result<Self, ImageError> {
         Ok(Self { mask: Some(Mask::new(bytes, self.width, self.height, row_stride)?), ..self })
     }
@@ -77,7 +77,7 @@ impl<'a> DepthMap<'a> {
         self.height
     }
 
-    /// The distance between neighbouring pixels, in the unit of the depths.
+    /// The distance between neighboring pixels, in the unit of the depths.
     #[must_use]
     pub const fn pitch(&self) -> f64 {
         self.pitch
@@ -126,7 +126,7 @@ impl<'a> DepthMap<'a> {
 
     /// The unit normal at column `x` and row `y`, n3 > 0; `None` outside the picture or the mask.
     ///
-    /// p = -n1/n3 and q = -n2/n3 are central differences of the depth. Where one of the two neighbours is outside the
+    /// p = -n1/n3 and q = -n2/n3 are central differences of the depth. Where one of the two neighbors is outside the
     /// picture or the mask the difference is one-sided, and where both are it is zero.
     #[must_use]
     #[inline]

@@ -1,16 +1,13 @@
 //! How sure F and every normal are.
 //!
-//! With n = G rho, G = F^-1, and G^T G = C, an error dC of C and a small rotation w change G by T G, to first order, with
-//! `T = F^T dC F / 2 + [w]x`: the symmetric part is all that C can say (G^T G alone is known), the other part all that it
-//! cannot (though the first turns the best rotation as well, see [`of_turn`]). So the covariance of T follows from those
-//! of C ([`Fit::covariance`]) and of the rotation ([`Joint::covariance`]), that of F from dF = -F T, and that of a normal
-//! from dn = T n + G d rho, d rho being noise of equal deviation in every channel ([`Fit::pixel_noise`], which holds what
-//! rounding adds).
+//! An error of G = F^-1 is written as G -> (1 + T) G. Its symmetric part is an error of C ([`Fit::covariance`]), its
+//! antisymmetric part a rotation ([`Joint::covariance`]). The covariance of T gives that of F, by dF = -F T, and that of a normal,
+//! by dn = T n + G d rho, where d rho is noise of equal deviation in every channel ([`Fit::pixel_noise`]). `docs/uncertainty.md`
+//! derives this.
 //!
-//! # The 1-sigma angle
-//! That below which 68.3 % of the errors are expected to lie, as people expect of one sigma; 95.4 to 99.0 % then lie below
-//! twice and 99.7 to 100.0 % below three times the angle ([`one_sigma`]). Errors of C and of the rotation are shared by
-//! all pixels of a picture: shares of one picture may be far from these, those of many pictures are not.
+//! The result is the 1-sigma angle of each normal, below which 68.3 % of the errors are expected to lie. Then 95.4 to 99.0 %
+//! lie below twice the angle and 99.7 to 100.0 % below three times ([`one_sigma`]). Errors of C and of the rotation are shared by
+//! all pixels of a picture: the shares in one picture may be far from these, over many pictures they are not.
 //!
 //! What is not in it: pixels that do not obey the model and are inliers all the same (the edge of a shadow), the choice
 //! between a surface and its twin ([`Joint::convexity`]), and orientations far from the best one ([`Joint::second_best`]).

@@ -9,7 +9,8 @@ pub type Covariance9 = [[f64; 9]; 9];
 /// Entry (i, j) of each of `COUNT` matrices, as nine rows of `COUNT`: the derivatives of a matrix by `COUNT` numbers.
 type Derivatives<const COUNT: usize> = [[f64; COUNT]; 9];
 
-/// The covariance of the matrix T of the parent's head, for F, the covariance of C and that of the rotation for a given C.
+/// The covariance of the matrix T of [`uncertainty`](super), from F, the covariance of C, and the covariance of the rotation
+/// for a given C.
 ///
 /// Normals bent by an error of C have another best rotation. How far off it is depends on the surface; the mean square
 /// taken here is that of the bending itself, which is what it comes to over many surfaces.
