@@ -1,4 +1,4 @@
-//! A camera's rows instead of a picture: the pipeline of [`solve`](crate::solve) over one row at a time.
+//! A camera's rows instead of a picture: the pipeline of [`solve`](mod@crate::solve) over one row at a time.
 //!
 //! A cold start takes two or three passes over a frame, or over consecutive frames of a scene at rest. The pass over its
 //! colors keeps a stratified sample, and ends with the model: everything that medians and fits are for is computed on the

@@ -6,7 +6,7 @@
 //! faces are looked for, among what the ellipsoid does not explain, and all colors near them are left out.
 //!
 //! A plane is a face where nearly all colors lie on one side of it, many more within the noise than right beside it, and a
-//! good part of these far from an ellipsoid that is fitted without them.
+//! good part of these far from an ellipsoid that is fitted without them. `docs/shadows.md` derives this, and says where it fails.
 //!
 //! # Reference
 //! Section 2 (shadows are outliers). M. A. Fischler, R. C. Bolles, "Random sample consensus", Commun. ACM 24, 1981.

@@ -4,15 +4,16 @@
 //! With N = G0 rho the normals up to a member of O(3), n = (r1.N, r2.N, r3.N), two kinds of evidence are weighed against
 //! each other, each by an uncertainty estimated from the picture itself:
 //!
-//! - *Integrability.* For a surface, `n3 n1_y - n1 n3_y = n3 n2_x - n2 n3_x`, which is linear in the first two rows,
-//!   `r1.(N x N_x) + r2.(N x N_y) = 0`: the condition of the parent's `orthogonal`, but on N and its gradients fitted to windows of
-//!   8 to 64 pixels, without what noise adds to the squares, and with less weight where it fails ([`integrable`]).
-//! - *Outward normals.* On the whole a normal points away from the middle of its surface: the slopes of N over position
-//!   are to be along x and y. Pentland's tilts say the same of mean gradients, which only the border of the surface
-//!   decides; regression listens to all of it. Both are used ([`outward`]).
+//! - *Integrability* (`integrable.rs`). For a surface, `n3 n1_y - n1 n3_y = n3 n2_x - n2 n3_x`, which is linear in the first two
+//!   rows, `r1.(N x N_x) + r2.(N x N_y) = 0`. N and its gradients are fitted to windows of 8 to 64 pixels; what noise adds to the
+//!   squares is taken off, and windows in which the condition fails lose weight.
+//! - *Outward normals* (`outward.rs`). On the whole a normal points away from the middle of its surface: the slopes of N over
+//!   position are to be along x and y. Pentland's tilts ask this of mean gradients, which the border of the surface alone decides;
+//!   regression listens to all of it. Both are used.
 //!
 //! (r1, r2) -> -(r1, r2), the convex/concave twin, changes nothing in the first. The sign of `sum (x n1 + y n2) / n3`
-//! over the parts of the surface chooses: normals that point outward make a dome.
+//! over the parts of the surface chooses: normals that point outward make a dome. `docs/joint-orientation.md` derives all of
+//! this, and says where it fails.
 //!
 //! # Reference
 //! Sections 2.3-2.4 (eqs. 13-15) and 3.2 (eqs. 20-21), which this combines.

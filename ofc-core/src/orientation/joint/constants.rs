@@ -33,7 +33,7 @@ pub(super) const SMALLEST_FILL: f64 = 0.6;
 /// Fewer windows than this say nothing: three parameters take as many to be found and as many to be doubted.
 pub(super) const SMALLEST_WINDOWS: usize = 6;
 
-/// As how many independent windows one counts that overlaps no other. By trial.
+/// What a window that overlaps no other counts in a negative log likelihood: half of its square over its variance.
 pub(super) const INDEPENDENT: f64 = 0.5;
 
 /// Shares of the room that windows of 64, 32 and 16 pixels may take, where there is not room for all: one in so many. There are the
@@ -53,7 +53,7 @@ pub(super) const ROUNDS: usize = 5;
 pub(super) const ROUND_EVALUATIONS: u32 = 120;
 
 /// s^2 above this many times its variance, two deviations, loses weight quickly. By trial; Student's distribution of three degrees
-/// of freedom falls off likewise.
+/// of freedom falls off about as fast.
 pub(super) const CUT: f64 = 4.0;
 
 /// The median of the square of a normal number of variance 1.

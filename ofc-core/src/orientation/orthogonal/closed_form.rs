@@ -1,6 +1,6 @@
 //! The orthogonal transformation from smoothness: r3 is an eigenvector, and one angle is left.
 //!
-//! What the paper tells of [15] is what this does; the original was not at hand, so the derivation is our own. Minimise
+//! What the paper tells of \[15\] is what this does; the original was not at hand, so the derivation is our own. Minimise
 //! the smoothness (16) of one row's component, `sum (r . N_x)^2 + (r . N_y)^2 = r^T S r`, over unit vectors r: with a
 //! Lagrange multiplier for r^T r = 1 the Euler equation is `S r = lambda r`,
 //! `S = sum(N_x N_x^T + N_y N_y^T)`, and the constraint that R be orthogonal makes all three rows eigenvectors of S.
