@@ -67,6 +67,16 @@ static void check(void **state)
     }
     assert_true(out.result.norm_min <= out.result.norm_median && out.result.norm_median <= out.result.norm_max);
     assert_true(out.result.depth_pixel_count == 0 && out.result.depth_angle_median_rad == 0);
+    assert_true(out.result.has_turn == 1 && out.result.reserved == 0);
+    assert_true(out.result.turn_rad < 0.1 && out.result.turn_expected_rad < 0.1 && out.result.convexity > 0.9);
+    /* The convex/concave twin, whose normals are turned half about the line of sight. */
+    ofc_solution twin = *solution;
+    for (int i = 0; i < 9; i++) {
+        twin.orientation.f[i] *= i % 3 < 2 ? -1 : 1;
+        twin.orientation.f_inverse[i] *= i / 3 < 2 ? -1 : 1;
+    }
+    assert_int_equal(CHECK(&twin, workspace, need, &out.result), OFC_STATUS_OK);
+    assert_true(out.result.has_turn == 1 && out.result.turn_rad > 1.8);
 }
 
 static void check_of_depth(void **state)

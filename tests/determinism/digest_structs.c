@@ -169,10 +169,15 @@ void mix_check(const ofc_check_result *result)
     mix_tilts(&result->depth_tilts);
     ARRAY(result->depth_tilt_difference_rad);
     NUMBER(result->largest_p);
+    NUMBER(result->turn_rad);
+    NUMBER(result->turn_expected_rad);
+    NUMBER(result->convexity);
     INTEGER(result->inlier_count);
     INTEGER(result->has_tilts);
     INTEGER(result->depth_pixel_count);
     INTEGER(result->has_depth_tilts);
+    INTEGER(result->has_turn);
+    INTEGER(result->reserved);
 }
 
 void mix_disc(const ofc_disc *disc)
