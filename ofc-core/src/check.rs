@@ -49,6 +49,7 @@ use crate::orientation::matrix::Orientation;
 use crate::picture::{Image, Pixels, for_each_bit};
 use crate::render::DepthMap;
 use crate::surface::normals::{Length, normal};
+use core::fmt;
 use correlation::Correlation;
 use differences::minus;
 use libm::{atan2, sqrt};
@@ -102,6 +103,21 @@ pub enum CheckError {
     /// The surface does not have the size of the picture.
     Size,
 }
+
+impl fmt::Display for CheckError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Orientation => {
+                "the color-orientation matrix or its inverse is not finite, or its rank is below 3"
+            }
+            Self::WorkspaceTooShort => "the workspace is too short",
+            Self::NoInliers => "there are no inliers",
+            Self::Size => "the surface does not have the size of the picture",
+        })
+    }
+}
+
+impl core::error::Error for CheckError {}
 
 /// How many `f32` [`check`] needs for a picture of `pixels` pixels.
 #[must_use]

@@ -15,6 +15,7 @@ pub use lights::{Lights, LightsError, MAX_LIGHTS};
 use crate::math::mat3;
 use crate::math::rng::Rng;
 use cast_shadow::{Caster, NO_TILES};
+use core::fmt;
 use libm::sqrt;
 
 /// What is added to eq. 5.
@@ -85,6 +86,21 @@ pub enum RenderError {
     /// An output is too short for the depth map, or the picture's size is not the depth map's.
     Size,
 }
+
+impl fmt::Display for RenderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NonFiniteDepth => "a depth inside the mask is not finite",
+            Self::Peak => "the peak is out of its range",
+            Self::Noise => "the noise is out of its range",
+            Self::Size => {
+                "an output is too short for the depth map, or the picture's size is not the depth map's"
+            }
+        })
+    }
+}
+
+impl core::error::Error for RenderError {}
 
 /// What was rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -33,6 +33,7 @@ use crate::orientation::integrability;
 use crate::orientation::joint::{self, CellSums, STRIP, WindowSums};
 use crate::picture::{Image, MAX_PIXELS, PixelCounts, Sample, Usable};
 use crate::solve::{self, OrientationMethod, Outcome, SlantFallback, Solution};
+use core::fmt;
 use rows::Rows;
 use strata::Strata;
 
@@ -118,6 +119,25 @@ pub enum StreamError {
     /// Nothing can be computed from the frame's colors; the next pass is over colors again.
     Fit(FitError),
 }
+
+impl fmt::Display for StreamError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Params => f.write_str("a parameter is out of its range"),
+            Self::Size => write!(f, "width or height is zero, or there are more than {MAX_PIXELS} pixels"),
+            Self::TooShort => f.write_str("a buffer is too short"),
+            Self::NoFrame => f.write_str("no frame was begun"),
+            Self::NotSolved => f.write_str("there is no color-orientation matrix yet"),
+            Self::RowOrder => f.write_str("a row comes twice, or one before it is missing"),
+            Self::TooManyRows => f.write_str("all rows of the frame were there already"),
+            Self::TooFewRows => f.write_str("the frame ends before its last row"),
+            Self::Row => f.write_str("not one row of the frame's width and pixel type"),
+            Self::Fit(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for StreamError {}
 
 /// How many `f32` [`Memory::values`] needs for all passes.
 #[must_use]

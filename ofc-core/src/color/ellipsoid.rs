@@ -4,6 +4,7 @@
 //! Section 2.1, eqs. 8-10 and 18.
 
 use crate::math::mat3::{self, Mat3};
+use core::fmt;
 use libm::sqrt;
 
 /// The six coefficients z = (c11, c22, c33, c12, c13, c23) of eq. 10, in (pixel value)^-2.
@@ -75,6 +76,14 @@ pub struct NotPositiveDefinite {
     /// The eigenvalues of C, descending.
     pub eigenvalues: [f64; 3],
 }
+
+impl fmt::Display for NotPositiveDefinite {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the colors do not lie on an ellipsoid: C is not positive definite")
+    }
+}
+
+impl core::error::Error for NotPositiveDefinite {}
 
 /// An eigenvalue below this share of the largest is zero in f64.
 const SMALLEST_EIGENVALUE_RATIO: f64 = 1e-14;

@@ -33,6 +33,7 @@ use super::rank::{Rank, rank};
 use super::scale::reciprocal_power_of_two;
 use crate::math::rng::Rng;
 use crate::picture::{Image, Usable, Window, for_each_bit};
+use core::fmt;
 use field::{FREE, Field, TRIED, UNUSABLE};
 use heapless::Vec;
 
@@ -46,6 +47,18 @@ pub enum SegmentError {
     /// A workspace is too short.
     WorkspaceTooShort,
 }
+
+impl fmt::Display for SegmentError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Params => "a parameter is out of its range",
+            Self::LabelsTooShort => "the label map is shorter than the picture has pixels",
+            Self::WorkspaceTooShort => "a workspace is too short",
+        })
+    }
+}
+
+impl core::error::Error for SegmentError {}
 
 /// One region.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,6 +4,7 @@
 //! shows by how much: divided by it, and scaled by its mean, the picture is as under distant lights.
 
 use crate::picture::{Image, Window};
+use core::fmt;
 
 /// A background pixel is dark, and says nothing, if a channel is below this share of the channel's mean.
 pub const DARK_SHARE: f64 = 0.05;
@@ -31,6 +32,20 @@ pub enum FlatFieldError {
     /// Every pixel of the background is dark, saturated or masked out, or a channel of it is black.
     Background,
 }
+
+impl fmt::Display for FlatFieldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Size => "the background has another size",
+            Self::Output => "the output is too short, or its rows are",
+            Self::Background => {
+                "every pixel of the background is dark, saturated or masked out, or a channel of it is black"
+            }
+        })
+    }
+}
+
+impl core::error::Error for FlatFieldError {}
 
 /// Writes the divided picture as r, g, b, in the picture's own pixel values; NaN where the background, or the picture by
 /// being saturated, says nothing. Pixels that are not finite stay so. Both views may have masks: pixels outside the background's

@@ -1,5 +1,7 @@
 //! How pixels lie in memory, and whether a buffer is long enough for them.
 
+use core::fmt;
+
 /// The largest number of pixels in a picture, 2^31 - 1: sums and indices stay far from their limits.
 pub const MAX_PIXELS: usize = i32::MAX as usize;
 
@@ -79,6 +81,21 @@ pub enum ImageError {
     /// The buffer ends before the last row does.
     TooShort,
 }
+
+impl fmt::Display for ImageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => f.write_str("width or height is zero"),
+            Self::TooLarge => {
+                write!(f, "more than {MAX_PIXELS} pixels, or a size in bytes beyond the address space")
+            }
+            Self::StrideTooSmall => f.write_str("the row stride is smaller than a row"),
+            Self::TooShort => f.write_str("the buffer ends before the last row does"),
+        }
+    }
+}
+
+impl core::error::Error for ImageError {}
 
 /// Checks a width, height and row stride against each other, and returns the bytes from the first pixel to the end
 /// of the last row.

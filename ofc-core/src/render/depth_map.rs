@@ -2,6 +2,7 @@
 
 use crate::math::mat3;
 use crate::picture::{ImageError, Mask, Sample, span};
+use core::fmt;
 use libm::sqrt;
 
 /// Why a depth map's view cannot be made.
@@ -12,6 +13,17 @@ pub enum DepthMapError {
     /// The pixel pitch is not in [1e-30, 1e30].
     Pitch,
 }
+
+impl fmt::Display for DepthMapError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Image(error) => error.fmt(f),
+            Self::Pitch => f.write_str("the pixel pitch is not in [1e-30, 1e30]"),
+        }
+    }
+}
+
+impl core::error::Error for DepthMapError {}
 
 impl From<ImageError> for DepthMapError {
     fn from(error: ImageError) -> Self {

@@ -4,6 +4,7 @@
 //! Section 1.1, eqs. 4-7.
 
 use crate::math::mat3::{self, Mat3};
+use core::fmt;
 
 /// Lights at most: a bit each in a pixel's mask.
 pub const MAX_LIGHTS: usize = u32::BITS as usize;
@@ -26,6 +27,19 @@ pub enum LightsError {
     /// An entry of a color is negative, above 1e30 or not a number.
     Color,
 }
+
+impl fmt::Display for LightsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Count => write!(f, "no light, or more than {MAX_LIGHTS}"),
+            Self::Size => f.write_str("a matrix does not have three entries a light"),
+            Self::Direction => f.write_str("a direction is not a unit vector"),
+            Self::Color => f.write_str("an entry of a color is negative, above 1e30 or not a number"),
+        }
+    }
+}
+
+impl core::error::Error for LightsError {}
 
 /// L distant lights, as views of the matrices A and B.
 #[derive(Clone, Copy, Debug)]

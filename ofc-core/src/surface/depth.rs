@@ -52,6 +52,8 @@ mod tridiagonal;
 
 pub use input::{DepthInput, Plane, Slopes, WEIGHT_RANGE};
 
+use core::fmt;
+
 /// The largest number of pixels that can be integrated, 2^29 - 1.
 pub const MAX_PIXELS: usize = (1 << 29) - 1;
 
@@ -148,6 +150,24 @@ pub enum DepthError {
     /// No pixel of the mask is usable.
     Empty,
 }
+
+impl fmt::Display for DepthError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Size => {
+                f.write_str("planes of different sizes or the wrong number of channels, or too large")
+            }
+            Self::Parameter => f.write_str("a parameter is out of its range"),
+            Self::Workspace(need) => write!(f, "the workspace is shorter than {need}"),
+            Self::Output => {
+                f.write_str("the depth buffer ends before the last row, or its rows are too short")
+            }
+            Self::Empty => f.write_str("no pixel of the mask is usable"),
+        }
+    }
+}
+
+impl core::error::Error for DepthError {}
 
 /// Numbers that [`integrate`] needs as workspace for a picture of this size; `None` if there is no such picture.
 ///

@@ -5,6 +5,7 @@
 
 use crate::math::mat3::{self, Mat3};
 use crate::picture::{Image, Window, for_each_bit};
+use core::fmt;
 use libm::sqrt;
 
 /// What becomes of a normal's length.
@@ -19,6 +20,14 @@ pub enum Length {
 /// The output buffer ends before the last row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooShort;
+
+impl fmt::Display for TooShort {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the output buffer ends before the last row")
+    }
+}
+
+impl core::error::Error for TooShort {}
 
 /// Writes the normal of every inlier and zeros everywhere else.
 ///

@@ -5,6 +5,7 @@ use crate::color::ellipsoid::Coefficients;
 use crate::color::inliers::Band;
 use crate::color::regression::{Estimate, TERMS, Triangle};
 use crate::picture::PixelCounts;
+use core::fmt;
 
 /// Why there is no fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +26,23 @@ pub enum FitError {
         color_deviations: [f64; 3],
     },
 }
+
+impl fmt::Display for FitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Params => f.write_str("a parameter is out of its range"),
+            Self::WorkspaceTooShort => f.write_str("the workspace is too short"),
+            Self::TooFewPixels => write!(f, "fewer than {MIN_PIXELS} usable pixels"),
+            Self::Dark => write!(f, "fewer than {MIN_PIXELS} usable pixels: most are black"),
+            Self::Saturated => write!(f, "fewer than {MIN_PIXELS} usable pixels: most are saturated"),
+            Self::RankDeficient { .. } => {
+                f.write_str("the colors, or the normals, span less than three dimensions")
+            }
+        }
+    }
+}
+
+impl core::error::Error for FitError {}
 
 /// What the regression found. Coefficients are in (pixel value)^-2.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,6 +11,7 @@
 use crate::color::ellipsoid;
 use crate::math::mat3;
 use crate::picture::{Image, Usable, WINDOW, Window, first_bits, for_each_bit};
+use core::fmt;
 use libm::sqrt;
 
 /// Sides of patches, in pixels.
@@ -21,6 +22,14 @@ pub const MAX_SIDE: usize = WINDOW;
 /// A parameter is out of its range, or the output is too short.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Refused;
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a parameter is out of its range, or the output is too short")
+    }
+}
+
+impl core::error::Error for Refused {}
 
 /// Patches in a row and in a column of a picture.
 #[must_use]

@@ -2,6 +2,7 @@
 
 use crate::math::mat3::{self, Mat3};
 use crate::orientation::integrability::Integrability;
+use core::fmt;
 use libm::{acos, atan2, sqrt};
 
 /// Why there is no transformation.
@@ -16,6 +17,19 @@ pub enum OrthogonalError {
     /// There are no cells of four inliers, or the normals do not vary over them.
     NoCells,
 }
+
+impl fmt::Display for OrthogonalError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Params => "a parameter is out of its range, or a tilt is not finite",
+            Self::WorkspaceTooShort => "the workspace is too short",
+            Self::SingularRoot => "the root has no inverse, or is not finite",
+            Self::NoCells => "there are no cells of four inliers, or the normals do not vary over them",
+        })
+    }
+}
+
+impl core::error::Error for OrthogonalError {}
 
 /// One member of O(3) and the F that follows from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
