@@ -8,13 +8,14 @@
 //! # Reference
 //! J. G. Harris, "A new approach to surface reconstruction: the coupled depth/slope model", ICCV 1987.
 
+use super::coarsen;
 use super::grid::Parts;
 use super::input::SlopeRow;
 use super::operator::{Fine, OnePlusMass, Packing, copy};
+use super::parameters::{DepthError, DepthResult};
 use super::poisson::{Answer, Job, pack};
 use super::solver::{Outcome, Stop, Work, solve};
 use super::sweep::{Buffers, dot};
-use super::{DepthError, DepthResult, coarsen};
 use libm::sqrt;
 
 pub(super) fn integrate(mut job: Job) -> Answer {

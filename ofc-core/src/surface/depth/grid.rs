@@ -4,7 +4,7 @@
 //! above, a row below and one number more. The padding stays zero, so that every pixel has four neighbours and no
 //! kernel knows about borders.
 
-/// Coarser grids at most: halving the longest side that [`MAX_PIXELS`](super::MAX_PIXELS) allows.
+/// Coarser grids at most: halving the longest side that [`MAX_PIXELS`](super::parameters::MAX_PIXELS) allows.
 pub(super) const MAX_LEVELS: usize = 30;
 
 /// Numbers that the coarse grids keep for each of their pixels: two edge weights, a mass, right side and correction.
@@ -92,7 +92,7 @@ impl Grid {
 ///
 /// The sum over the coarse grids is bounded in closed form: level k is at most (w / 2^k + 1) pixels wide.
 pub(super) const fn workspace_len(width: usize, height: usize) -> Option<usize> {
-    if width == 0 || height == 0 || width > super::MAX_PIXELS / height {
+    if width == 0 || height == 0 || width > super::parameters::MAX_PIXELS / height {
         return None;
     }
     let (w, h, levels) = (width as u64, height as u64, MAX_LEVELS as u64);

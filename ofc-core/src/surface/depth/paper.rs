@@ -4,8 +4,8 @@
 //! Section 5: "p and q were set to zero" where pixels do not obey the model.
 
 use super::grid::Parts;
+use super::parameters::{DepthError, DepthResult};
 use super::poisson::{Answer, Job};
-use super::{DepthError, DepthResult};
 
 pub(super) fn integrate(mut job: Job) -> Answer {
     if let Some(along) = job.rectangle_along()

@@ -1,14 +1,16 @@
 //! Least squares over the usable pixels, and the last step of the other methods: slopes in, depth out.
 
 use super::grid::Parts;
+use super::input::DepthInput;
 use super::input::SlopeRow;
 use super::operator::{Fine, Packing, Signed};
+use super::parameters::{DepthError, DepthParams, DepthResult, Method};
 use super::regions::{Regions, Runs, Total, sum};
 use super::right_side::Size;
 use super::solver::{Outcome, Output, Stop, Work, solve};
 use super::sweep::Buffers;
 use super::trend::Trend;
-use super::{DepthError, DepthInput, DepthParams, DepthResult, Method, coarsen, right_side};
+use super::{coarsen, right_side};
 use libm::sqrt;
 
 /// Everything a method works with.

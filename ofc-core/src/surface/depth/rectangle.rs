@@ -8,10 +8,11 @@ use super::cosine_transform::{CosineTransform, Rows};
 use super::fourier::Lengths;
 use super::grid::{FineArrays, Grid, Parts};
 use super::input::SlopeRow;
+use super::parameters::{DepthError, DepthResult, Method};
 use super::poisson::{Answer, Job, NO_DEPTH};
 use super::sweep::{Buffers, dot};
 use super::trend::{Fit, Trend};
-use super::{DepthError, DepthResult, Method, tridiagonal};
+use super::tridiagonal;
 use libm::sqrt;
 
 /// A residual of this part of the depth is what f32 leaves, and no worse than what was asked for.
