@@ -65,7 +65,7 @@ rust_packages() {
 # build_archive NAME TRIPLE FLAGS [FEATURE]: libofc.a by the profile `firmware`, with these flags for rustc. Sets `archive`
 # to its path.
 build_archive() {
-    local name=$1 triple=$2 flags=$3 features=panic-handler${4:+,$4} sysroot folder=target/bare/$1
+    local name=$1 triple=$2 flags=$3 features=${4-} sysroot folder=target/bare/$1
     local build=(cargo rustc --quiet --profile firmware -p ofc-ffi --lib --crate-type staticlib
         --no-default-features --features "$features" --target "$triple" --target-dir "$folder")
     sysroot=$(rustc --print sysroot)

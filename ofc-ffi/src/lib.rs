@@ -1,6 +1,6 @@
 //! The C ABI of ofc and nothing else: pointers are checked, structs are turned into the core's types, results are
 //! written back. `include/ofc.h` is generated from this crate; its doc comments are the manual.
-#![cfg_attr(not(feature = "std"), no_std)]
+#![no_std]
 #![allow(non_camel_case_types)] // The names are C's.
 #![allow(clippy::missing_safety_doc)] // The documentation is for C callers: every call says what it needs.
 #![allow(clippy::doc_markdown)] // As above: names are not Rust links.
@@ -8,6 +8,7 @@
 mod check;
 mod depth;
 mod flat_field;
+mod freestanding;
 mod image;
 mod light;
 mod orientation;
@@ -42,6 +43,3 @@ pub use stream::*;
 pub use types::*;
 pub use uncertainty::*;
 pub use version::*;
-
-#[cfg(all(feature = "panic-handler", not(feature = "std")))]
-mod freestanding;

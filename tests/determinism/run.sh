@@ -43,8 +43,7 @@ compare() {
 host() {
     local name=$1 flags=$2 library=$out/$1-library
     shift 2
-    RUSTFLAGS=$flags cargo build --quiet -p ofc-ffi --no-default-features --features panic-handler,full-streams \
-        --target-dir "$library" "$@"
+    RUSTFLAGS=$flags cargo build --quiet -p ofc-ffi --target-dir "$library" "$@"
     gcc "${options[@]}" -no-pie "${portable[@]}" "$here"/{linux,memory}.c "$library"/*/libofc.a -o "$out/$name"
 }
 

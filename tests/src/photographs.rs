@@ -56,14 +56,22 @@ pub fn load(name: &str) -> Option<Photograph> {
     let (width, height, rgb) = read_png(&folder.join("rgb.png"), 3);
     let (.., mask) = read_png(&folder.join("mask.png"), 1);
     let normals = match std::fs::read(folder.join("normals.npy")) {
-        Ok(bytes) => {
-            let file = npyz::NpyFile::new(&bytes[..]).expect("a npy file");
-            let values: Vec<f32> = file.into_vec().expect("float32 values");
-            values.as_chunks().0.to_vec()
-        }
+        Ok(bytes) => read_npy(&bytes).as_chunks().0.to_vec(),
         Err(_) => Vec::new(),
     };
     Some(Photograph { width, height, rgb, mask, normals })
+}
+
+/// The values of a `NumPy` file of format 1.0 that holds little-endian `float32` row by row.
+fn read_npy(bytes: &[u8]) -> Vec<f32> {
+    let (start, rest) = bytes.split_at(10);
+    let (start, length) = start.split_at(8);
+    assert_eq!(start, b"\x93NUMPY\x01\x00", "a NumPy file");
+    let length = usize::from(u16::from_le_bytes(length.try_into().expect("two bytes")));
+    let (header, values) = rest.split_at(length);
+    let header = String::from_utf8_lossy(header);
+    assert!(header.contains("'descr': '<f4'") && header.contains("'fortran_order': False"), "{header}");
+    values.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect()
 }
 
 /// Width, height and samples of an 8-bit PNG of so many channels.

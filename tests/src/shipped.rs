@@ -10,7 +10,10 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the tests lie in the project")
 }
 
-/// The folder of `libofc.so` and `libofc.a`, built without the standard library.
+/// What cargo is told to build the library: README's command.
+pub const BUILD: &str = "build --release -p ofc-ffi";
+
+/// The folder of `libofc.so` and `libofc.a`.
 ///
 /// # Panics
 /// When they cannot be built.
@@ -18,11 +21,11 @@ pub fn folder() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let arguments = "build --quiet --release -p ofc-ffi --no-default-features --features panic-handler,full-streams \
-                         --target-dir target/ship";
-        let status = Command::new(cargo).args(arguments.split_whitespace()).current_dir(root()).status();
-        assert!(status.expect("cargo runs").success(), "cargo {arguments}");
-        root().join("target/ship/release")
+        let mut build = Command::new(cargo);
+        // The folder is the default one, whatever the environment says.
+        build.args(BUILD.split_whitespace()).args(["--quiet", "--target-dir", "target"]).current_dir(root());
+        assert!(build.status().expect("cargo runs").success(), "cargo {BUILD}");
+        root().join("target/release")
     })
 }
 

@@ -59,6 +59,37 @@ fn exports_only_ofc_and_needs_no_allocator() {
     assert_eq!(surprising_needs(&listing), [""; 0]);
 }
 
+/// What belongs to the standard library or to an allocator.
+fn of_std(listing: &str) -> Vec<&str> {
+    const SIGNS: [&str; 4] = ["std::", "alloc::", "__rust", "__rg_"];
+    listing.lines().filter(|line| SIGNS.iter().any(|sign| line.contains(sign))).collect()
+}
+
+#[test]
+fn holds_nothing_of_the_standard_library() {
+    let listing = shipped::stdout("nm", &["-C", &folder().join("libofc.so").to_string_lossy()]);
+    assert!(listing.contains("ofc_core::solve::solve"), "inner names have been stripped: {listing}");
+    assert_eq!(of_std(&listing), [""; 0]);
+}
+
+/// Whether a text says how to build the library, and says it as the tests do.
+fn builds_what_is_tested(text: &str) -> bool {
+    let mut commands =
+        text.match_indices("cargo build").map(|(start, _)| text[start..].lines().next().unwrap_or_default());
+    let shipped = format!("cargo {}", shipped::BUILD);
+    let rest = |command: &str| command.strip_prefix(&shipped).map(|rest| rest.trim().to_owned());
+    let same = |command: &str| matches!(rest(command).as_deref(), Some("" | "--quiet --target-dir target"));
+    commands.clone().count() > 0 && commands.all(same)
+}
+
+#[test]
+fn what_is_built_by_hand_is_what_is_tested() {
+    for file in ["README.md", "tests/CMakeLists.txt", "c_examples/CMakeLists.txt"] {
+        let text = std::fs::read_to_string(root().join(file)).expect("a file of the project");
+        assert!(builds_what_is_tested(&text), "{file}");
+    }
+}
+
 #[test]
 fn every_export_has_a_contract_test() {
     assert_eq!(never_called(&listing(), &contract_tests()), [""; 0]);
@@ -81,4 +112,7 @@ fn the_checks_can_fail() {
     assert_eq!(surprising_needs(listing), ["malloc"]);
     assert_eq!(foreign_exports(listing), ["other"]);
     assert_eq!(never_called(listing, "ofc_old(); ofc_new_and_better();"), ["ofc_new", "other"]);
+    assert_eq!(of_std("1000 t std::io::Write\n2000 T __rustc::__rust_alloc\n3000 t core::cmp\n").len(), 2);
+    assert!(!builds_what_is_tested("make"));
+    assert!(!builds_what_is_tested("cargo build --release -p ofc-ffi\ncargo build -p ofc-ffi --features x"));
 }
