@@ -1125,8 +1125,6 @@ typedef struct ofc_covariance {
     double pixel_noise;
 } ofc_covariance;
 
-
-
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus

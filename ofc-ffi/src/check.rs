@@ -1,20 +1,21 @@
 //! Whether to believe an answer: self-checks and ranks.
 
-use crate::image::{image, ofc_image};
-use crate::pointers::{Extent, Out, Plain, disjoint, input, workspace};
-use crate::regression::{accepted_by, float_bytes, floats, pixel_count};
-use crate::render::{ofc_depth_map, surface};
+use crate::image::{ofc_image, pixel_count};
+use crate::orientation::solved;
+use crate::pointers::{Contract, bytes, plain, unless_null};
+use crate::render::ofc_depth_map;
 use crate::solve::ofc_solution;
 use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NOT_SOLVED, OFC_STATUS_OK, OFC_STATUS_TOO_FEW_PIXELS,
-    OFC_STATUS_WORKSPACE_TOO_SMALL, of, ofc_status,
+    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, OFC_STATUS_TOO_FEW_PIXELS, ensure, ofc_status,
 };
-use crate::types::{count, finite_matrix, ofc_color_fit, ofc_inliers, ofc_tilts};
+use crate::twin::{FromC, ToC, to_c};
+use crate::types::{ofc_color_fit, ofc_inliers, ofc_tilts};
 use core::ffi::c_void;
-use ofc_core::check::{self, Check, CheckError, Norms, Turn};
+use ofc_core::check::{self, Check, Norms, Turn};
+use ofc_core::color::inliers::Inliers;
 use ofc_core::color::rank::{self, Rank};
 use ofc_core::color::regression::Estimate;
-use ofc_core::orientation::matrix::Orientation;
+use ofc_core::math::arena::Need;
 
 /// How well an answer explains its own picture. How to read it:
 ///
@@ -104,28 +105,13 @@ pub struct ofc_rank {
     pub normals: i32,
 }
 
-// SAFETY: integers and floats.
-unsafe impl Plain for ofc_check_result {}
-// SAFETY: as above.
-unsafe impl Plain for ofc_rank {}
+plain!(ofc_check_result, ofc_rank);
 
-impl From<Rank> for ofc_rank {
-    fn from(value: Rank) -> Self {
-        let Rank { colors, normals, color_deviations, color_noise, normal_deviations, normal_noise } = value;
-        Self {
-            color_deviations,
-            color_noise,
-            normal_deviations,
-            normal_noise,
-            colors: colors.cast_signed(),
-            normals: normals.map_or(0, u32::cast_signed),
-        }
-    }
-}
+to_c!(Rank => ofc_rank { color_deviations, color_noise, normal_deviations, normal_noise, colors, normals });
 
-impl From<Check> for ofc_check_result {
-    fn from(value: Check) -> Self {
-        let Check {
+impl ToC<ofc_check_result> for Check {
+    fn to_c(&self) -> ofc_check_result {
+        let Self {
             inliers,
             correlations,
             norms: Norms { median, min, max },
@@ -136,31 +122,31 @@ impl From<Check> for ofc_check_result {
             turn,
             depth,
             largest_p,
-        } = value;
+        } = self;
         let depth = depth.unwrap_or_default();
         let nothing = Turn { angle: 0.0, expected: 0.0, convexity: 0.0 };
-        let (has_turn, Turn { angle, expected, convexity }) = (turn.is_some(), turn.unwrap_or(nothing));
-        Self {
-            correlation: correlations,
-            norm_median: median,
-            norm_min: min,
-            norm_max: max,
-            tilts: tilts.map_or(ofc_tilts::default(), ofc_tilts::from),
-            relit_tilts: relit_tilts.map_or(ofc_tilts::default(), ofc_tilts::from),
+        let Turn { angle, expected, convexity } = turn.unwrap_or(nothing);
+        ofc_check_result {
+            correlation: *correlations,
+            norm_median: *median,
+            norm_min: *min,
+            norm_max: *max,
+            tilts: tilts.to_c(),
+            relit_tilts: relit_tilts.to_c(),
             tilt_difference_rad: tilt_differences.unwrap_or_default(),
             tilt_residual_rad: tilt_residuals.unwrap_or_default(),
             depth_angle_median_rad: depth.median_angle,
-            depth_tilts: depth.tilts.map_or(ofc_tilts::default(), ofc_tilts::from),
+            depth_tilts: depth.tilts.to_c(),
             depth_tilt_difference_rad: depth.tilt_differences.unwrap_or_default(),
-            largest_p,
+            largest_p: *largest_p,
             turn_rad: angle,
             turn_expected_rad: expected,
             convexity,
-            inlier_count: count(inliers),
-            has_tilts: i32::from(tilts.is_some() && relit_tilts.is_some()),
-            depth_pixel_count: count(depth.pixels),
-            has_depth_tilts: i32::from(depth.tilt_differences.is_some()),
-            has_turn: i32::from(has_turn),
+            inlier_count: inliers.to_c(),
+            has_tilts: (tilts.is_some() && relit_tilts.is_some()).to_c(),
+            depth_pixel_count: depth.pixels.to_c(),
+            has_depth_tilts: depth.tilt_differences.is_some().to_c(),
+            has_turn: turn.is_some().to_c(),
             reserved: 0,
         }
     }
@@ -171,7 +157,7 @@ impl From<Check> for ofc_check_result {
 /// @return The size, or 0 when an argument is invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_check_workspace_size(width: i32, height: i32) -> usize {
-    float_bytes(check::workspace_len(pixel_count(width, height)))
+    bytes(Need::of_singles(check::workspace_len(pixel_count(width, height))))
 }
 
 /// Checks a solution against its own picture; the struct says how to read the result.
@@ -196,50 +182,21 @@ pub unsafe extern "C" fn ofc_check(
     workspace_bytes: usize,
     result: *mut ofc_check_result,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (solution, solution_extent) = input(solution)?;
-        let (surface, [f, g, h]) = if depth.is_null() {
-            (None, [Extent::NOTHING; 3])
-        } else {
-            // SAFETY: the contract of this function.
-            let (surface, extents) = unsafe { self::surface(depth) }?;
-            (Some(surface), extents)
-        };
-        let view = &picture.view;
-        let need = float_bytes(check::workspace_len(view.width() * view.height()));
-        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
-        let out = Out::new(result)?;
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(&[scratch, out.extent], &[a, b, c, d, e, f, g, h, solution_extent])?;
-        if solution.outcome != OFC_STATUS_OK {
-            return Err(OFC_STATUS_NOT_SOLVED);
-        }
-        let orientation = Orientation {
-            f: finite_matrix(solution.orientation.f)?,
-            f_inverse: finite_matrix(solution.orientation.f_inverse)?,
-            singular_values: solution.orientation.singular_values,
-            rank: u32::try_from(solution.orientation.rank).unwrap_or(0),
-        };
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let solution = call.input(solution)?;
+        let surface = unless_null(depth, || call.surface(depth))?;
+        let need = check::workspace_len(picture.width() * picture.height());
+        let workspace = call.floats(workspace, workspace_bytes, need)?;
+        let result = call.output(result)?;
+        let orientation = solved(&solution)?;
+        let test = Inliers::from_c(solution.inliers)?;
         let coefficients = solution.fit.coefficients.map(Estimate::from);
-        let test = solution.inliers.into_core();
-        // SAFETY: checked and disjoint.
-        let scratch = unsafe { floats(workspace, need) };
-        let found = check::check(view, &test, &orientation, &coefficients, surface.as_ref(), scratch);
-        out.write(found.map_err(of_check_error)?.into());
+        let found = check::check(&picture, &test, &orientation, &coefficients, surface.as_ref(), workspace)?;
+        *result = found.to_c();
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
-}
-
-const fn of_check_error(error: CheckError) -> ofc_status {
-    match error {
-        CheckError::Orientation => OFC_STATUS_NOT_SOLVED,
-        CheckError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
-        CheckError::Size => OFC_STATUS_INVALID_PARAMETER,
-        CheckError::NoInliers => OFC_STATUS_TOO_FEW_PIXELS,
-    }
+    })
 }
 
 /// The effective ranks of a picture's colors and normals.
@@ -259,25 +216,16 @@ pub unsafe extern "C" fn ofc_rank_compute(
     fit: *const ofc_color_fit,
     rank: *mut ofc_rank,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (test, test_extent) = accepted_by(inliers, &picture)?;
-        let (fit, fit_extent) = if fit.is_null() {
-            (None, Extent::NOTHING)
-        } else {
-            let (fit, extent) = input(fit)?;
-            (Some((fit.coefficients.map(|c| c.value), fit.residual_deviation)), extent)
-        };
-        let out = Out::new(rank)?;
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(&[out.extent], &[a, b, c, d, e, test_extent, fit_extent])?;
-        if fit.is_some_and(|(z, deviation)| !(z.iter().all(|c| c.is_finite()) && deviation >= 0.0)) {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        let found = rank::rank(&picture.view, test.selector(), fit);
-        out.write(found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?.into());
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let test = call.inliers(inliers, &picture)?;
+        let fit = unless_null(fit, || call.input(fit))?;
+        let fit = fit.map(|fit| (fit.coefficients.map(|c| c.value), fit.residual_deviation));
+        let rank = call.output(rank)?;
+        let finite = fit.is_none_or(|(z, deviation)| z.iter().all(|c| c.is_finite()) && deviation >= 0.0);
+        ensure(finite, OFC_STATUS_INVALID_PARAMETER)?;
+        *rank = rank::rank(&picture, test.selector(), fit).ok_or(OFC_STATUS_TOO_FEW_PIXELS)?.to_c();
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }

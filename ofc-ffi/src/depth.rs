@@ -1,21 +1,17 @@
 //! Depth from normals or gradients.
 
-use crate::image::dimension;
-use crate::pointers::{Extent, Out, Plain, disjoint, extent, input, input_slice, output_slice, workspace};
-use crate::regression::{float_bytes, floats};
-use crate::render::{ofc_depth_map, surface};
+use crate::image::{dimension, size_of_map};
+use crate::pointers::{Call, Contract, Plain, bytes, plain, unless_null};
+use crate::render::ofc_depth_map;
 use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_NOT_CONVERGED, OFC_STATUS_NULL_POINTER,
-    OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO, OFC_STATUS_STRIDE_TOO_SMALL, OFC_STATUS_TOO_FEW_PIXELS,
-    OFC_STATUS_TOO_LARGE, OFC_STATUS_WORKSPACE_TOO_SMALL, of, of_image_error, ofc_status,
+    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NOT_CONVERGED, OFC_STATUS_NULL_POINTER, OFC_STATUS_OK,
+    OFC_STATUS_STRIDE_TOO_SMALL, Refusal, ensure, ofc_status,
 };
-use crate::types::count;
+use crate::twin::{ToC, constants, from_c, to_c};
 use core::ffi::c_void;
-use ofc_core::picture::span;
+use ofc_core::math::arena::Need;
 use ofc_core::render::{Rows, normals_from_depth};
-use ofc_core::surface::depth::{
-    self, DepthError, DepthInput, DepthParams, DepthResult, Method, Plane, Slopes,
-};
+use ofc_core::surface::depth::{self, DepthInput, DepthParams, DepthResult, Method, Plane, Slopes};
 
 /// What to do where a slope is unusable: its normal is not finite or faces away, or its weight is zero.
 pub type ofc_depth_method = i32;
@@ -111,33 +107,18 @@ pub struct ofc_depth_result {
     pub reserved: u32,
 }
 
-// SAFETY: integers, floats and raw pointers.
-unsafe impl Plain for ofc_depth_input {}
-// SAFETY: as above.
-unsafe impl Plain for ofc_depth_params {}
-// SAFETY: as above.
-unsafe impl Plain for ofc_depth_result {}
+plain!(ofc_depth_input, ofc_depth_params, ofc_depth_result);
 
-impl ofc_depth_params {
-    fn check(self) -> Result<DepthParams, ofc_status> {
-        let Self { pixel_pitch, tolerance, min_n3, prior_weight, smoothness, method, max_cycles, reserved } =
-            self;
-        if reserved != [0; 4] {
-            return Err(OFC_STATUS_RESERVED_NOT_ZERO);
-        }
-        let method = match method {
-            OFC_DEPTH_POISSON => Method::Poisson,
-            OFC_DEPTH_PAPER => Method::Paper,
-            OFC_DEPTH_COUPLED => Method::Coupled,
-            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
-        };
-        let max_cycles = u32::try_from(max_cycles).unwrap_or(0);
-        if max_cycles == 0 {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        Ok(DepthParams { method, pixel_pitch, tolerance, max_cycles, min_n3, prior_weight, smoothness })
-    }
-}
+constants!(Method = { Poisson: OFC_DEPTH_POISSON, Paper: OFC_DEPTH_PAPER, Coupled: OFC_DEPTH_COUPLED });
+to_c!(DepthParams => ofc_depth_params {
+    pixel_pitch, tolerance, min_n3, prior_weight, smoothness, method, max_cycles
+} zero { reserved });
+from_c!(DepthParams <= ofc_depth_params {
+    pixel_pitch, tolerance, min_n3, prior_weight, smoothness, method, max_cycles
+} zero { reserved });
+to_c!(DepthResult => ofc_depth_result {
+    residual, cycles, regions, converged; pixel_count: pixels, excluded_count: excluded
+} zero { reserved });
 
 /// Sets every field to its default.
 ///
@@ -145,21 +126,11 @@ impl ofc_depth_params {
 /// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_depth_params_default(params: *mut ofc_depth_params) -> ofc_status {
-    of(Out::new(params).map(|out| {
-        let DepthParams { method: _, pixel_pitch, tolerance, max_cycles, min_n3, prior_weight, smoothness } =
-            DepthParams::default();
-        out.write(ofc_depth_params {
-            pixel_pitch,
-            tolerance,
-            min_n3,
-            prior_weight,
-            smoothness,
-            method: OFC_DEPTH_POISSON,
-            max_cycles: max_cycles.cast_signed(),
-            reserved: [0; 4],
-        });
-        OFC_STATUS_OK
-    }))
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        *call.output(params)? = DepthParams::default().to_c();
+        Ok(OFC_STATUS_OK)
+    })
 }
 
 /// Bytes of workspace that ofc_depth_integrate() needs: about 23 a pixel, for every method.
@@ -171,30 +142,21 @@ pub extern "C" fn ofc_depth_workspace_size(width: i32, height: i32) -> usize {
     if width == 0 || height == 0 {
         return 0;
     }
-    depth::workspace_len(width, height).map_or(0, float_bytes)
+    depth::workspace_len(width, height).map_or(0, |singles| bytes(Need::of_singles(singles)))
 }
 
 /// A map of `channels` numbers a pixel, or none where the pointer is NULL.
-///
-/// # Safety
-/// It can be read and is not written during the call.
-unsafe fn plane<'a, T: Plain>(
+fn plane<'a, T: Plain>(
+    call: &mut Call<'a>,
     pointer: *const T,
     [width, height]: [usize; 2],
     channels: usize,
     stride_bytes: usize,
-) -> Result<(Option<Plane<'a, T>>, Extent), ofc_status> {
-    if pointer.is_null() {
-        return Ok((None, Extent::NOTHING));
-    }
-    if !stride_bytes.is_multiple_of(size_of::<T>()) {
-        return Err(OFC_STATUS_MISALIGNED);
-    }
-    let stride = stride_bytes / size_of::<T>();
-    let need = span(width, height, channels, stride).map_err(of_image_error)?;
-    // SAFETY: the caller's promise.
-    let (values, extent) = unsafe { input_slice(pointer, need) }?;
-    Ok((Some(Plane::new(values, width, height, channels, stride).map_err(of_image_error)?), extent))
+) -> Result<Option<Plane<'a, T>>, Refusal> {
+    unless_null(pointer, || {
+        let (values, stride) = call.input_rows(pointer, [width, height], channels, stride_bytes)?;
+        Ok(Plane::new(values, width, height, channels, stride)?)
+    })
 }
 
 /// Integrates normals or gradients into depth, which grows toward the camera.
@@ -227,60 +189,36 @@ pub unsafe extern "C" fn ofc_depth_integrate(
     depth_stride_bytes: usize,
     result: *mut ofc_depth_result,
 ) -> ofc_status {
-    let body = || {
-        let (own, own_extent) = self::input(input)?;
-        let (width, height) = (dimension(own.width), dimension(own.height));
-        let size = [width, height];
-        // What is given at all first: a picture without a pixel is refused before its pointers are.
-        let span = span(width, height, 1, depth_stride_bytes / size_of::<f32>()).map_err(of_image_error)?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let own = call.input(input)?;
+        let size = size_of_map(own.width, own.height)?;
         let gradients = !own.p.is_null() || !own.q.is_null();
-        if gradients && !own.normals.is_null() {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        // SAFETY: the contract of this function.
-        let ((normals, a), (p, b), (q, c), (mask, d), (weights, e), (prior, f)) = unsafe {
-            (
-                plane(own.normals, size, 3, own.normals_stride_bytes)?,
-                plane(own.p, size, 1, own.p_stride_bytes)?,
-                plane(own.q, size, 1, own.q_stride_bytes)?,
-                plane(own.mask, size, 1, own.mask_stride_bytes)?,
-                plane(own.weights, size, 1, own.weights_stride_bytes)?,
-                plane(own.prior, size, 1, own.prior_stride_bytes)?,
-            )
-        };
+        ensure(own.normals.is_null() || !gradients, OFC_STATUS_INVALID_PARAMETER)?;
+        let normals = plane(call, own.normals, size, 3, own.normals_stride_bytes)?;
+        let p = plane(call, own.p, size, 1, own.p_stride_bytes)?;
+        let q = plane(call, own.q, size, 1, own.q_stride_bytes)?;
         let slopes = match (normals, p, q) {
             (Some(normals), ..) => Slopes::Normals(normals),
             (None, Some(p), Some(q)) => Slopes::Gradients { p, q },
-            _ => return Err(OFC_STATUS_NULL_POINTER),
+            _ => return Err(Refusal(OFC_STATUS_NULL_POINTER)),
         };
-        let (params, params_extent) = self::input(params)?;
-        let params = params.check()?;
-        if !depth_stride_bytes.is_multiple_of(size_of::<f32>()) {
-            return Err(OFC_STATUS_MISALIGNED);
-        }
-        let depth_extent = extent(depth.cast_const(), span)?;
-        let need = depth::workspace_len(width, height).map_or(0, float_bytes);
-        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
-        let out = Out::new(result)?;
-        disjoint(&[scratch, depth_extent, out.extent], &[own_extent, params_extent, a, b, c, d, e, f])?;
-        let task = DepthInput { slopes, mask, weights, prior };
-        // SAFETY: checked and disjoint.
-        let (scratch, depths) = unsafe { (floats(workspace, need), output_slice(depth, span)) };
-        let DepthResult { converged, cycles, residual, regions, pixels, excluded } =
-            depth::integrate(&task, &params, scratch, depths, depth_stride_bytes / size_of::<f32>())
-                .map_err(of_depth_error)?;
-        out.write(ofc_depth_result {
-            residual,
-            cycles: i32::try_from(cycles).unwrap_or(i32::MAX),
-            regions: count(regions),
-            pixel_count: count(pixels),
-            excluded_count: count(excluded),
-            converged: i32::from(converged),
-            reserved: 0,
-        });
-        Ok(if converged { OFC_STATUS_OK } else { OFC_STATUS_NOT_CONVERGED })
-    };
-    of(body())
+        let task = DepthInput {
+            slopes,
+            mask: plane(call, own.mask, size, 1, own.mask_stride_bytes)?,
+            weights: plane(call, own.weights, size, 1, own.weights_stride_bytes)?,
+            prior: plane(call, own.prior, size, 1, own.prior_stride_bytes)?,
+        };
+        let params: DepthParams = call.params(params)?;
+        let (depths, stride) = call.output_rows(depth, size, 1, depth_stride_bytes)?;
+        let [width, height] = size;
+        let need = depth::workspace_len(width, height).unwrap_or(0);
+        let workspace = call.floats(workspace, workspace_bytes, need)?;
+        let result = call.output(result)?;
+        let found = depth::integrate(&task, &params, workspace, depths, stride)?;
+        *result = found.to_c();
+        Ok(if found.converged { OFC_STATUS_OK } else { OFC_STATUS_NOT_CONVERGED })
+    })
 }
 
 /// Unit normals of a depth map: of central differences of its depths, one-sided at the borders of picture, mask and surface.
@@ -295,30 +233,13 @@ pub unsafe extern "C" fn ofc_depth_normals(
     normals: *mut f32,
     normals_stride_bytes: usize,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let (surface, [own, depths, mask]) = unsafe { surface(depth) }?;
-        if !normals_stride_bytes.is_multiple_of(size_of::<f32>()) {
-            return Err(OFC_STATUS_MISALIGNED);
-        }
-        let stride = normals_stride_bytes / size_of::<f32>();
-        let need = span(surface.width(), surface.height(), 3, stride).map_err(of_image_error)?;
-        let written = extent(normals.cast_const(), need)?;
-        disjoint(&[written], &[own, depths, mask])?;
-        // SAFETY: checked and disjoint.
-        let mut rows = Rows { values: unsafe { output_slice(normals, need) }, row_stride: stride };
-        normals_from_depth(&surface, &mut rows).map_err(|_| OFC_STATUS_STRIDE_TOO_SMALL)?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let surface = call.surface(depth)?;
+        let size = [surface.width(), surface.height()];
+        let (values, row_stride) = call.output_rows(normals, size, 3, normals_stride_bytes)?;
+        let written = normals_from_depth(&surface, &mut Rows { values, row_stride });
+        written.map_err(|_| OFC_STATUS_STRIDE_TOO_SMALL)?;
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
-}
-
-const fn of_depth_error(error: DepthError) -> ofc_status {
-    match error {
-        DepthError::Size => OFC_STATUS_TOO_LARGE,
-        DepthError::Parameter => OFC_STATUS_INVALID_PARAMETER,
-        DepthError::Workspace(_) => OFC_STATUS_WORKSPACE_TOO_SMALL,
-        DepthError::Output => OFC_STATUS_STRIDE_TOO_SMALL,
-        DepthError::Empty => OFC_STATUS_TOO_FEW_PIXELS,
-    }
+    })
 }

@@ -1,14 +1,10 @@
 //! Flat-fielding.
 
-use crate::image::{image, ofc_image};
-use crate::pointers::{Out, Plain, disjoint, extent, output_slice};
-use crate::status::{
-    OFC_STATUS_DARK, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_OK,
-    OFC_STATUS_STRIDE_TOO_SMALL, of, of_image_error, ofc_status,
-};
-use crate::types::count;
-use ofc_core::picture::flat_field::{self, FlatField, FlatFieldError};
-use ofc_core::picture::span;
+use crate::image::{ofc_image, size};
+use crate::pointers::{Contract, plain};
+use crate::status::{OFC_STATUS_OK, ofc_status};
+use crate::twin::{ToC, to_c};
+use ofc_core::picture::flat_field::{self, FlatField};
 
 /// What flat-fielding did.
 #[repr(C)]
@@ -26,8 +22,9 @@ pub struct ofc_flat_field_result {
     pub reserved: u32,
 }
 
-// SAFETY: integers and floats.
-unsafe impl Plain for ofc_flat_field_result {}
+plain!(ofc_flat_field_result);
+
+to_c!(FlatField => ofc_flat_field_result { mean, used, dark, saturated } zero { reserved });
 
 /// Divides a picture by that of the same flat, uniform surface without the object, and scales it by the mean of that: what
 /// near lights that fall off across the field need before ofc_solve(), which then takes the result as OFC_PIXEL_RGB32F.
@@ -48,38 +45,12 @@ pub unsafe extern "C" fn ofc_flat_field(
     pixels_stride_bytes: usize,
     result: *mut ofc_flat_field_result,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let (picture, flat) = unsafe { (self::image(image)?, self::image(background)?) };
-        if !pixels_stride_bytes.is_multiple_of(size_of::<f32>()) {
-            return Err(OFC_STATUS_MISALIGNED);
-        }
-        let stride = pixels_stride_bytes / size_of::<f32>();
-        let need = span(picture.view.width(), picture.view.height(), 3, stride).map_err(of_image_error)?;
-        let written = extent(pixels.cast_const(), need)?;
-        let out = Out::new(result)?;
-        let ([a, b, c, d, e], [f, g, h, i, j]) = (picture.extents, flat.extents);
-        disjoint(&[written, out.extent], &[a, b, c, d, e, f, g, h, i, j])?;
-        // SAFETY: checked and disjoint.
-        let pixels = unsafe { output_slice(pixels, need) };
-        let FlatField { mean, used, dark, saturated } =
-            flat_field::divide(&picture.view, &flat.view, pixels, stride).map_err(of_flat_field_error)?;
-        out.write(ofc_flat_field_result {
-            mean,
-            used: count(used),
-            dark: count(dark),
-            saturated: count(saturated),
-            reserved: 0,
-        });
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let (picture, background) = (call.image(image)?, call.image(background)?);
+        let (pixels, stride) = call.output_rows(pixels, size(&picture), 3, pixels_stride_bytes)?;
+        let result = call.output(result)?;
+        *result = flat_field::divide(&picture, &background, pixels, stride)?.to_c();
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
-}
-
-const fn of_flat_field_error(error: FlatFieldError) -> ofc_status {
-    match error {
-        FlatFieldError::Size => OFC_STATUS_INVALID_PARAMETER,
-        FlatFieldError::Output => OFC_STATUS_STRIDE_TOO_SMALL,
-        FlatFieldError::Background => OFC_STATUS_DARK,
-    }
+    })
 }

@@ -1,12 +1,14 @@
 //! The picture as C describes it.
 
-use crate::pointers::{Extent, Plain, input, input_slice};
+use crate::pointers::{Call, Plain, plain, unless_null};
 use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_RESERVED_NOT_ZERO, OFC_STATUS_UNKNOWN_FORMAT, of_image_error,
-    ofc_status,
+    OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_RESERVED_NOT_ZERO,
+    OFC_STATUS_TOO_LARGE, OFC_STATUS_UNKNOWN_FORMAT, Refusal, ensure,
 };
+use crate::types::ofc_inliers;
 use core::ffi::c_void;
-use ofc_core::picture::{Image, Order, Sample, span};
+use ofc_core::color::inliers::Inliers;
+use ofc_core::picture::{Image, MAX_PIXELS, Order, Sample, Usable, span};
 
 /// How pixels are stored: one of OFC_PIXEL_*. 16-bit and float samples are in the machine's byte order.
 pub type ofc_pixel_format = i32;
@@ -71,28 +73,19 @@ pub struct ofc_image {
     pub mask_stride_bytes: usize,
 }
 
-// SAFETY: integers and raw pointers.
-unsafe impl Plain for ofc_image {}
-
-/// A checked picture and the bytes it lies in.
-pub(crate) struct CheckedImage<'a> {
-    /// The view.
-    pub view: Image<'a>,
-    /// The struct, the planes and the mask.
-    pub extents: [Extent; 5],
-}
+plain!(ofc_image);
 
 enum Layout {
     Interleaved(Order),
     Planes,
 }
 
-fn layout(format: ofc_pixel_format) -> Result<(Sample, Layout), ofc_status> {
+fn layout(format: ofc_pixel_format) -> Result<(Sample, Layout), Refusal> {
     let sample = match format {
         OFC_PIXEL_RGB8..=OFC_PIXEL_PLANES8 => Sample::U8,
         OFC_PIXEL_RGB16..=OFC_PIXEL_PLANES16 => Sample::U16,
         OFC_PIXEL_RGB32F..=OFC_PIXEL_PLANES32F => Sample::F32,
-        _ => return Err(OFC_STATUS_UNKNOWN_FORMAT),
+        _ => return Err(Refusal(OFC_STATUS_UNKNOWN_FORMAT)),
     };
     let layout = match format % 10 {
         OFC_PIXEL_RGB8 => Layout::Interleaved(Order::Rgb),
@@ -105,68 +98,121 @@ fn layout(format: ofc_pixel_format) -> Result<(Sample, Layout), ofc_status> {
 }
 
 /// The layout of a format that is not planar.
-pub(crate) fn interleaved_layout(format: ofc_pixel_format) -> Result<(Sample, Order), ofc_status> {
+pub(crate) fn interleaved_layout(format: ofc_pixel_format) -> Result<(Sample, Order), Refusal> {
     match layout(format)? {
         (sample, Layout::Interleaved(order)) => Ok((sample, order)),
-        (_, Layout::Planes) => Err(OFC_STATUS_UNKNOWN_FORMAT),
+        (_, Layout::Planes) => Err(Refusal(OFC_STATUS_UNKNOWN_FORMAT)),
     }
 }
 
 /// How a format stores samples.
-pub(crate) fn sample_type(format: ofc_pixel_format) -> Result<Sample, ofc_status> {
+pub(crate) fn sample_type(format: ofc_pixel_format) -> Result<Sample, Refusal> {
     layout(format).map(|(sample, _)| sample)
 }
 
-fn checked_span(width: usize, height: usize, pixel_bytes: usize, stride: usize) -> Result<usize, ofc_status> {
-    span(width, height, pixel_bytes, stride).map_err(of_image_error)
-}
-
-/// Width and height as sizes, 0 for what is negative.
+/// A width, height or count as a size, 0 for what is negative.
 pub(crate) fn dimension(size: i32) -> usize {
     usize::try_from(size).unwrap_or(0)
 }
 
-/// Checks a picture.
-///
-/// # Safety
-/// The pixels and the mask can be read and are not written during the call.
-pub(crate) unsafe fn image<'a>(pointer: *const ofc_image) -> Result<CheckedImage<'a>, ofc_status> {
-    let (image, own) = input(pointer)?;
-    if image.reserved != 0 {
-        return Err(OFC_STATUS_RESERVED_NOT_ZERO);
-    }
-    let (sample, layout) = layout(image.format)?;
-    let (width, height, stride) = (dimension(image.width), dimension(image.height), image.row_stride_bytes);
-    let view = match layout {
-        Layout::Interleaved(order) => {
-            if !image.green_plane.is_null() || !image.blue_plane.is_null() {
-                return Err(OFC_STATUS_INVALID_PARAMETER);
+/// Width and height of a map, which must have pixels.
+pub(crate) fn size_of_map(width: i32, height: i32) -> Result<[usize; 2], Refusal> {
+    ensure(width > 0 && height > 0, OFC_STATUS_EMPTY)?;
+    Ok([dimension(width), dimension(height)])
+}
+
+/// Pixels of a picture, 0 where there are none or too many.
+pub(crate) fn pixel_count(width: i32, height: i32) -> usize {
+    dimension(width).checked_mul(dimension(height)).filter(|&pixels| pixels <= MAX_PIXELS).unwrap_or(0)
+}
+
+/// Pixels of a picture, of which there must be some and not too many.
+pub(crate) fn checked_pixel_count(width: i32, height: i32) -> Result<usize, Refusal> {
+    size_of_map(width, height)?;
+    let pixels = pixel_count(width, height);
+    ensure(pixels > 0, OFC_STATUS_TOO_LARGE)?;
+    Ok(pixels)
+}
+
+/// How many values of `T` the rows of a map take, and how many lie from a row to the next.
+fn rows<T>(
+    [width, height]: [usize; 2],
+    values: usize,
+    stride_bytes: usize,
+) -> Result<(usize, usize), Refusal> {
+    ensure(stride_bytes.is_multiple_of(size_of::<T>()), OFC_STATUS_MISALIGNED)?;
+    let stride = stride_bytes / size_of::<T>();
+    Ok((span(width, height, values, stride)?, stride))
+}
+
+impl<'a> Call<'a> {
+    /// A picture.
+    #[inline(never)]
+    pub(crate) fn image(&mut self, pointer: *const ofc_image) -> Result<Image<'a>, Refusal> {
+        let image = self.input(pointer)?;
+        ensure(image.reserved == 0, OFC_STATUS_RESERVED_NOT_ZERO)?;
+        let (sample, layout) = layout(image.format)?;
+        let (width, height, stride) =
+            (dimension(image.width), dimension(image.height), image.row_stride_bytes);
+        let view = match layout {
+            Layout::Interleaved(order) => {
+                let others = [image.green_plane, image.blue_plane];
+                ensure(others.iter().all(|plane| plane.is_null()), OFC_STATUS_INVALID_PARAMETER)?;
+                let bytes = span(width, height, order.samples() * sample.bytes(), stride)?;
+                let pixels = self.input_bytes(image.pixels, bytes)?;
+                Image::interleaved(pixels, width, height, stride, sample, order)?
             }
-            let bytes = checked_span(width, height, order.samples() * sample.bytes(), stride)?;
-            // SAFETY: the caller's promise.
-            let (pixels, extent) = unsafe { input_slice(image.pixels.cast::<u8>(), bytes) }?;
-            (Image::interleaved(pixels, width, height, stride, sample, order), [extent; 3])
+            Layout::Planes => {
+                let bytes = span(width, height, sample.bytes(), stride)?;
+                let red = self.input_bytes(image.pixels, bytes)?;
+                let green = self.input_bytes(image.green_plane, bytes)?;
+                let blue = self.input_bytes(image.blue_plane, bytes)?;
+                Image::planes([red, green, blue], width, height, stride, sample)?
+            }
+        };
+        if image.mask.is_null() {
+            return Ok(view);
         }
-        Layout::Planes => {
-            let bytes = checked_span(width, height, sample.bytes(), stride)?;
-            // SAFETY: the caller's promise.
-            let ((red, r), (green, g), (blue, b)) = unsafe {
-                (
-                    input_slice(image.pixels.cast::<u8>(), bytes)?,
-                    input_slice(image.green_plane.cast::<u8>(), bytes)?,
-                    input_slice(image.blue_plane.cast::<u8>(), bytes)?,
-                )
-            };
-            (Image::planes([red, green, blue], width, height, stride, sample), [r, g, b])
-        }
-    };
-    let (view, [r, g, b]) = (view.0.map_err(of_image_error)?, view.1);
-    if image.mask.is_null() {
-        return Ok(CheckedImage { view, extents: [own, r, g, b, own] });
+        let mask = self.input_slice(image.mask, span(width, height, 1, image.mask_stride_bytes)?)?;
+        Ok(view.with_mask(mask, image.mask_stride_bytes)?)
     }
-    let bytes = checked_span(width, height, 1, image.mask_stride_bytes)?;
-    // SAFETY: the caller's promise.
-    let (mask, extent) = unsafe { input_slice(image.mask, bytes) }?;
-    let view = view.with_mask(mask, image.mask_stride_bytes).map_err(of_image_error)?;
-    Ok(CheckedImage { view, extents: [own, r, g, b, extent] })
+
+    /// The test at `inliers`, or every usable pixel of the picture where it is NULL.
+    pub(crate) fn inliers(
+        &mut self,
+        inliers: *const ofc_inliers,
+        picture: &Image,
+    ) -> Result<Inliers, Refusal> {
+        let given = unless_null(inliers, || self.params(inliers))?;
+        Ok(given.unwrap_or_else(|| Inliers::all(Usable::below(picture.sample().saturation()))))
+    }
+
+    /// Rows of so many values a pixel that the call reads, and how many values lie from a row to the next.
+    pub(crate) fn input_rows<T: Plain>(
+        &mut self,
+        pointer: *const T,
+        size: [usize; 2],
+        values: usize,
+        stride_bytes: usize,
+    ) -> Result<(&'a [T], usize), Refusal> {
+        let (count, stride) = rows::<T>(size, values, stride_bytes)?;
+        Ok((self.input_slice(pointer, count)?, stride))
+    }
+
+    /// Rows of so many values a pixel that the call writes, and how many values lie from a row to the next.
+    pub(crate) fn output_rows<T: Plain>(
+        &mut self,
+        pointer: *mut T,
+        size: [usize; 2],
+        values: usize,
+        stride_bytes: usize,
+    ) -> Result<(&'a mut [T], usize), Refusal> {
+        let (count, stride) = rows::<T>(size, values, stride_bytes)?;
+        Ok((self.output_slice(pointer, count)?, stride))
+    }
+}
+
+/// Width and height of a picture.
+pub(crate) fn size(view: &Image) -> [usize; 2] {
+    [view.width(), view.height()]
 }

@@ -21,6 +21,7 @@ mod slants;
 mod solve;
 mod status;
 mod stream;
+mod twin;
 mod types;
 mod uncertainty;
 mod version;

@@ -1,18 +1,20 @@
 //! Estimators of the direction and strength of each channel's equivalent light.
 
-use crate::image::{dimension, image, ofc_image};
-use crate::pointers::{Out, Plain, disjoint, extent, input, input_slice, output_slice, workspace};
-use crate::regression::{accepted_by, float_bytes, floats, pixel_count};
+use crate::image::{dimension, ofc_image, pixel_count};
+use crate::pointers::{Call, Contract, bytes, plain};
 use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_TILT, OFC_STATUS_OK, OFC_STATUS_TOO_FEW_PIXELS, of,
-    ofc_status,
+    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_TILT, OFC_STATUS_OK, OFC_STATUS_TOO_FEW_PIXELS, Refusal,
+    ensure, ofc_status,
 };
-use crate::types::{count, ofc_inliers, ofc_tilts};
+use crate::twin::{ToC, constants, to_c};
+use crate::types::{ofc_inliers, ofc_tilts};
 use core::ffi::c_void;
 use ofc_core::color::inliers::Inliers;
 use ofc_core::light::channel_maxima;
 use ofc_core::light::slant::{self, Estimate, Reach};
-use ofc_core::light::tilt::{Tilts, chojnacki, lee_rosenfeld, pentland, zheng_chellappa};
+use ofc_core::light::tilt::chojnacki::{self, Disc};
+use ofc_core::light::tilt::{Tilts, lee_rosenfeld, pentland, zheng_chellappa};
+use ofc_core::math::arena::Need;
 use ofc_core::picture::Image;
 
 /// An estimator of tilts, for ofc_solve_params: one of OFC_TILT_*.
@@ -64,43 +66,32 @@ pub struct ofc_slant_estimate {
     pub reserved: u32,
 }
 
-// SAFETY: integers.
-unsafe impl Plain for ofc_disc {}
-// SAFETY: integers and floats.
-unsafe impl Plain for ofc_slant_estimate {}
+plain!(ofc_disc, ofc_slant_estimate);
 
-impl From<Estimate> for ofc_slant_estimate {
-    fn from(estimate: Estimate) -> Self {
-        let Estimate { slant, statistic, reach } = estimate;
-        let reach = match reach {
-            Reach::Inside => OFC_REACH_INSIDE,
-            Reach::BelowZero => OFC_REACH_BELOW_ZERO,
-            Reach::AboveLargest => OFC_REACH_ABOVE_LARGEST,
-        };
-        Self { slant_rad: slant, statistic, reach, reserved: 0 }
-    }
-}
+constants!(Reach = {
+    Inside: OFC_REACH_INSIDE,
+    BelowZero: OFC_REACH_BELOW_ZERO,
+    AboveLargest: OFC_REACH_ABOVE_LARGEST,
+});
+to_c!(Estimate => ofc_slant_estimate { statistic, reach; slant_rad: slant } zero { reserved });
+to_c!(Disc => ofc_disc { x, y, radius_squared });
 
-/// The common body of the estimators of tilts.
-///
-/// # Safety
-/// As the calls that use it.
-unsafe fn estimate_tilts(
+/// The body of the estimators of tilts.
+fn estimate_tilts(
+    call: &mut Call,
     image: *const ofc_image,
     inliers: *const ofc_inliers,
     tilts: *mut ofc_tilts,
-    estimate: impl Fn(&Image, &Inliers) -> Option<Tilts>,
-) -> Result<ofc_status, ofc_status> {
-    // SAFETY: the contract of the caller.
-    let picture = unsafe { self::image(image) }?;
-    let (test, test_extent) = accepted_by(inliers, &picture)?;
-    let out = Out::new(tilts)?;
-    let [a, b, c, d, e] = picture.extents;
-    disjoint(&[out.extent], &[a, b, c, d, e, test_extent])?;
-    out.write(estimate(&picture.view, &test).ok_or(OFC_STATUS_NO_TILT)?.into());
+    estimate: impl FnOnce(&Image, &Inliers) -> Option<Tilts>,
+) -> Result<ofc_status, Refusal> {
+    let picture = call.image(image)?;
+    let test = call.inliers(inliers, &picture)?;
+    let tilts = call.output(tilts)?;
+    *tilts = estimate(&picture, &test).ok_or(OFC_STATUS_NO_TILT)?.to_c();
     Ok(OFC_STATUS_OK)
 }
 
+/// Tilts of an estimator that knows no gradients.
 fn alone(tilts: [f64; 3]) -> Tilts {
     Tilts { tilts, gradients: [[0.0; 2]; 3] }
 }
@@ -121,8 +112,8 @@ pub unsafe extern "C" fn ofc_tilt_pentland(
     tilts: *mut ofc_tilts,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    of(unsafe {
-        estimate_tilts(image, inliers, tilts, |image, test| pentland::tilts(image, test.selector()))
+    unsafe { Contract::kept() }.call(|call| {
+        estimate_tilts(call, image, inliers, tilts, |image, test| pentland::tilts(image, test.selector()))
     })
 }
 
@@ -145,24 +136,15 @@ pub unsafe extern "C" fn ofc_tilt_pentland_along(
     count: i32,
     tilts: *mut ofc_tilts,
 ) -> ofc_status {
-    let body = || {
-        let count = dimension(count);
-        extent(steps, 1)?;
-        if !(2..=64).contains(&count) {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        // SAFETY: the contract of this function.
-        let (steps, steps_extent) = unsafe { input_slice(steps, count * 2) }?;
-        disjoint(&[Out::new(tilts)?.extent], &[steps_extent])?;
-        let (steps, _) = steps.as_chunks::<2>();
-        // SAFETY: the contract of this function.
-        unsafe {
-            estimate_tilts(image, inliers, tilts, |image, test| {
-                pentland::tilts_along(image, test.selector(), steps)
-            })
-        }
-    };
-    of(body())
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let in_range = (2..=64).contains(&count);
+        ensure(steps.is_null() || in_range, OFC_STATUS_INVALID_PARAMETER)?;
+        let (steps, _) = call.input_slice(steps, dimension(count) * 2)?.as_chunks::<2>();
+        estimate_tilts(call, image, inliers, tilts, |image, test| {
+            pentland::tilts_along(image, test.selector(), steps)
+        })
+    })
 }
 
 /// Lee and Rosenfeld's tilts: Pentland's with the axes alone.
@@ -180,8 +162,8 @@ pub unsafe extern "C" fn ofc_tilt_lee_rosenfeld(
     tilts: *mut ofc_tilts,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    of(unsafe {
-        estimate_tilts(image, inliers, tilts, |image, test| {
+    unsafe { Contract::kept() }.call(|call| {
+        estimate_tilts(call, image, inliers, tilts, |image, test| {
             lee_rosenfeld::tilts(image, test.selector()).map(alone)
         })
     })
@@ -203,8 +185,8 @@ pub unsafe extern "C" fn ofc_tilt_zheng_chellappa(
     tilts: *mut ofc_tilts,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    of(unsafe {
-        estimate_tilts(image, inliers, tilts, |image, test| {
+    unsafe { Contract::kept() }.call(|call| {
+        estimate_tilts(call, image, inliers, tilts, |image, test| {
             zheng_chellappa::tilts(image, test.selector()).map(alone)
         })
     })
@@ -227,21 +209,15 @@ pub unsafe extern "C" fn ofc_tilt_chojnacki(
     disc: *const ofc_disc,
     tilts: *mut ofc_tilts,
 ) -> ofc_status {
-    let body = || {
-        let (disc, disc_extent) = input(disc)?;
-        disjoint(&[Out::new(tilts)?.extent], &[disc_extent])?;
-        let (Ok(x), Ok(y)) = (usize::try_from(disc.x), usize::try_from(disc.y)) else {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        };
-        let disc = chojnacki::Disc { x, y, radius_squared: disc.radius_squared };
-        // SAFETY: the contract of this function.
-        unsafe {
-            estimate_tilts(image, inliers, tilts, |image, test| {
-                chojnacki::tilts(image, test.selector(), &disc).map(alone)
-            })
-        }
-    };
-    of(body())
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let ofc_disc { x, y, radius_squared } = call.input(disc)?;
+        ensure(x >= 0 && y >= 0, OFC_STATUS_INVALID_PARAMETER)?;
+        let disc = Disc { x: dimension(x), y: dimension(y), radius_squared };
+        estimate_tilts(call, image, inliers, tilts, |image, test| {
+            chojnacki::tilts(image, test.selector(), &disc).map(alone)
+        })
+    })
 }
 
 /// Bytes of workspace that ofc_largest_disc() needs: 4 a pixel.
@@ -249,7 +225,7 @@ pub unsafe extern "C" fn ofc_tilt_chojnacki(
 /// @return The size, or 0 when an argument is invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_largest_disc_workspace_size(width: i32, height: i32) -> usize {
-    float_bytes(chojnacki::workspace_len(pixel_count(width, height)))
+    bytes(Need::of_singles(chojnacki::workspace_len(pixel_count(width, height))))
 }
 
 /// The largest disc inside the inliers; outliers that are not part of a square of four do not count.
@@ -268,48 +244,31 @@ pub unsafe extern "C" fn ofc_largest_disc(
     workspace_bytes: usize,
     disc: *mut ofc_disc,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (test, test_extent) = accepted_by(inliers, &picture)?;
-        let view = &picture.view;
-        let need = float_bytes(chojnacki::workspace_len(view.width() * view.height()));
-        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
-        let out = Out::new(disc)?;
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(&[scratch, out.extent], &[a, b, c, d, e, test_extent])?;
-        // SAFETY: checked and disjoint.
-        let scratch = unsafe { floats(workspace, need) };
-        let found = chojnacki::largest_disc(view, test.selector(), scratch);
-        let chojnacki::Disc { x, y, radius_squared } = found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
-        out.write(ofc_disc { x: count(x), y: count(y), radius_squared });
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let test = call.inliers(inliers, &picture)?;
+        let need = chojnacki::workspace_len(picture.width() * picture.height());
+        let workspace = call.floats(workspace, workspace_bytes, need)?;
+        let disc = call.output(disc)?;
+        let found = chojnacki::largest_disc(&picture, test.selector(), workspace);
+        *disc = found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?.to_c();
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
-/// The common body of the estimators of slants.
-///
-/// # Safety
-/// As the calls that use it.
-unsafe fn estimate_slants(
+/// The body of the estimators of slants.
+fn estimate_slants(
+    call: &mut Call,
     image: *const ofc_image,
     inliers: *const ofc_inliers,
     slants: *mut ofc_slant_estimate,
-    estimate: impl Fn(&Image, &Inliers) -> Option<[Estimate; 3]>,
-) -> Result<ofc_status, ofc_status> {
-    // SAFETY: the contract of the caller.
-    let picture = unsafe { self::image(image) }?;
-    let (test, test_extent) = accepted_by(inliers, &picture)?;
-    let out_extent = extent(slants.cast_const(), 3)?;
-    let [a, b, c, d, e] = picture.extents;
-    disjoint(&[out_extent], &[a, b, c, d, e, test_extent])?;
-    let found = estimate(&picture.view, &test).ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
-    // SAFETY: checked and disjoint.
-    let out = unsafe { output_slice(slants, 3) };
-    for (slot, estimate) in out.iter_mut().zip(found) {
-        *slot = estimate.into();
-    }
+    estimate: impl FnOnce(&Image, &Inliers) -> Option<[Estimate; 3]>,
+) -> Result<ofc_status, Refusal> {
+    let picture = call.image(image)?;
+    let test = call.inliers(inliers, &picture)?;
+    let slants = call.output_array(slants)?;
+    *slants = estimate(&picture, &test).ok_or(OFC_STATUS_TOO_FEW_PIXELS)?.to_c();
     Ok(OFC_STATUS_OK)
 }
 
@@ -328,8 +287,10 @@ pub unsafe extern "C" fn ofc_slant_pentland(
     slants: *mut ofc_slant_estimate,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    of(unsafe {
-        estimate_slants(image, inliers, slants, |image, test| slant::pentland::slants(image, test.selector()))
+    unsafe { Contract::kept() }.call(|call| {
+        estimate_slants(call, image, inliers, slants, |image, test| {
+            slant::pentland::slants(image, test.selector())
+        })
     })
 }
 
@@ -349,8 +310,8 @@ pub unsafe extern "C" fn ofc_slant_lee_rosenfeld(
     slants: *mut ofc_slant_estimate,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    of(unsafe {
-        estimate_slants(image, inliers, slants, |image, test| {
+    unsafe { Contract::kept() }.call(|call| {
+        estimate_slants(call, image, inliers, slants, |image, test| {
             slant::lee_rosenfeld::slants(image, test.selector())
         })
     })
@@ -370,8 +331,8 @@ pub unsafe extern "C" fn ofc_slant_zheng_chellappa(
     slants: *mut ofc_slant_estimate,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    of(unsafe {
-        estimate_slants(image, core::ptr::null(), slants, |image, _| {
+    unsafe { Contract::kept() }.call(|call| {
+        estimate_slants(call, image, core::ptr::null(), slants, |image, _| {
             slant::zheng_chellappa::slants(image, |window| {
                 window.masked & window.bits(|r, g, b| r.is_finite() & g.is_finite() & b.is_finite())
             })
@@ -393,16 +354,12 @@ pub unsafe extern "C" fn ofc_channel_maxima(
     inliers: *const ofc_inliers,
     norms: *mut f64,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (test, test_extent) = accepted_by(inliers, &picture)?;
-        let out = Out::new(norms.cast::<[f64; 3]>())?;
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(&[out.extent], &[a, b, c, d, e, test_extent])?;
-        let found = channel_maxima::norms(&picture.view, test.selector());
-        out.write(found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?);
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let test = call.inliers(inliers, &picture)?;
+        let norms = call.output_array(norms)?;
+        *norms = channel_maxima::norms(&picture, test.selector()).ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }

@@ -1,18 +1,15 @@
 //! The orthogonal transformation by other methods than tilts, and slants from tilts and integrability.
 
-use crate::image::{image, ofc_image};
-use crate::pointers::{Extent, Out, Plain, disjoint, extent, input, input_array, workspace};
-use crate::regression::{accepted_by, float_bytes, floats, pixel_count};
-use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_CELLS, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO,
-    OFC_STATUS_WORKSPACE_TOO_SMALL, of, ofc_status,
-};
-use crate::types::{finite_matrix, flat, ofc_inliers, ofc_integrability, ofc_slants};
+use crate::image::{ofc_image, pixel_count};
+use crate::pointers::{Call, Contract, bytes, plain, unless_null};
+use crate::status::{OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, Refusal, ensure, ofc_status};
+use crate::twin::{FromC, ToC, constants, from_c, to_c};
+use crate::types::{ofc_inliers, ofc_integrability, ofc_slants};
 use core::ffi::c_void;
+use ofc_core::math::arena::Need;
+use ofc_core::math::mat3::Mat3;
 use ofc_core::orientation::orthogonal::annealing::{self, Params};
-use ofc_core::orientation::orthogonal::{
-    Found, OrthogonalError, Transformation, TwinChoice, closed_form, tilts_given,
-};
+use ofc_core::orientation::orthogonal::{Found, Transformation, TwinChoice, closed_form, tilts_given};
 
 /// What chose between the convex/concave twins: one of OFC_TWIN_*.
 pub type ofc_twin_choice = i32;
@@ -79,99 +76,26 @@ pub struct ofc_orthogonal {
     pub evaluations: u32,
 }
 
-// SAFETY: integers and floats.
-unsafe impl Plain for ofc_annealing_params {}
-// SAFETY: as above.
-unsafe impl Plain for ofc_orthogonal {}
+plain!(ofc_annealing_params, ofc_orthogonal);
 
-impl ofc_annealing_params {
-    fn defaults() -> Self {
-        let Params { proposals, chains, sample_cells, temperatures, angles, polish_evaluations, seed } =
-            Params::default();
-        Self {
-            temperatures,
-            angles_rad: angles,
-            seed,
-            proposals,
-            chains,
-            sample_cells,
-            polish_evaluations,
-            reserved: [0; 4],
-        }
-    }
+constants!(TwinChoice = { Convex: OFC_TWIN_CONVEX, Tilts: OFC_TWIN_TILTS });
+to_c!(Params => ofc_annealing_params {
+    temperatures, seed, proposals, chains, sample_cells, polish_evaluations; angles_rad: angles
+} zero { reserved });
+from_c!(Params <= ofc_annealing_params {
+    temperatures, seed, proposals, chains, sample_cells, polish_evaluations; angles_rad: angles
+} zero { reserved } where are_valid);
+to_c!(Transformation => ofc_transformation { rows, f, f_inverse; tilt_rad: tilts, slant_rad: slants });
+to_c!(Found => ofc_orthogonal {
+    twin, clarity, integral, unpolished, choice, evaluations; chosen: transformation
+});
 
-    fn check(self) -> Result<Params, ofc_status> {
-        let Self {
-            temperatures,
-            angles_rad,
-            seed,
-            proposals,
-            chains,
-            sample_cells,
-            polish_evaluations,
-            reserved,
-        } = self;
-        if reserved != [0; 4] {
-            return Err(OFC_STATUS_RESERVED_NOT_ZERO);
-        }
-        let angles = angles_rad;
-        let params =
-            Params { proposals, chains, sample_cells, temperatures, angles, polish_evaluations, seed };
-        if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
-    }
-}
-
-impl From<Transformation> for ofc_transformation {
-    fn from(transformation: Transformation) -> Self {
-        let Transformation { rows, f, f_inverse, tilts, slants } = transformation;
-        Self {
-            rows: flat(&rows),
-            f: flat(&f),
-            f_inverse: flat(&f_inverse),
-            tilt_rad: tilts,
-            slant_rad: slants,
-        }
-    }
-}
-
-impl From<Found> for ofc_orthogonal {
-    fn from(found: Found) -> Self {
-        let Found { transformation, twin, choice, clarity, integral, unpolished, evaluations } = found;
-        let choice = match choice {
-            TwinChoice::Convex => OFC_TWIN_CONVEX,
-            TwinChoice::Tilts => OFC_TWIN_TILTS,
-        };
-        Self {
-            chosen: transformation.into(),
-            twin: twin.into(),
-            clarity,
-            integral: integral.into(),
-            unpolished: unpolished.into(),
-            choice,
-            evaluations,
-        }
-    }
-}
-
-const fn of_orthogonal_error(error: OrthogonalError) -> ofc_status {
-    match error {
-        OrthogonalError::Params | OrthogonalError::SingularRoot => OFC_STATUS_INVALID_PARAMETER,
-        OrthogonalError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
-        OrthogonalError::NoCells => OFC_STATUS_NO_CELLS,
-    }
-}
-
-/// Three tilts, or none where the pointer is NULL.
-fn optional_tilts(tilt_rad: *const f64) -> Result<(Option<[f64; 3]>, Extent), ofc_status> {
-    if tilt_rad.is_null() {
-        return Ok((None, Extent::NOTHING));
-    }
-    let (tilts, extent) = input_array::<f64, 3>(tilt_rad)?;
-    if tilts.iter().all(|tilt| tilt.is_finite()) {
-        Ok((Some(tilts), extent))
-    } else {
-        Err(OFC_STATUS_INVALID_PARAMETER)
-    }
+/// Three finite tilts, or none where the pointer is NULL.
+fn optional_tilts(call: &mut Call, tilt_rad: *const f64) -> Result<Option<[f64; 3]>, Refusal> {
+    let tilts = unless_null(tilt_rad, || call.input_array::<f64, 3>(tilt_rad))?;
+    let finite = tilts.iter().flatten().all(|tilt| tilt.is_finite());
+    ensure(finite, OFC_STATUS_INVALID_PARAMETER)?;
+    Ok(tilts)
 }
 
 /// Sets every field to its default.
@@ -180,10 +104,11 @@ fn optional_tilts(tilt_rad: *const f64) -> Result<(Option<[f64; 3]>, Extent), of
 /// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_annealing_params_default(params: *mut ofc_annealing_params) -> ofc_status {
-    of(Out::new(params).map(|out| {
-        out.write(ofc_annealing_params::defaults());
-        OFC_STATUS_OK
-    }))
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        *call.output(params)? = Params::default().to_c();
+        Ok(OFC_STATUS_OK)
+    })
 }
 
 /// Bytes of workspace that ofc_orthogonal_annealing() needs: 36 for each cell that proposals are evaluated on.
@@ -195,8 +120,11 @@ pub unsafe extern "C" fn ofc_orthogonal_annealing_workspace_size(
     height: i32,
     params: *const ofc_annealing_params,
 ) -> usize {
-    let Ok(params) = input(params).and_then(|(params, _)| params.check()) else { return 0 };
-    float_bytes(annealing::workspace_len(pixel_count(width, height), params.sample_cells))
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.size(|call| {
+        let params: Params = call.params(params)?;
+        Ok(Need::of_singles(annealing::workspace_len(pixel_count(width, height), params.sample_cells)))
+    })
 }
 
 /// The orthogonal transformation that minimises the integral (15) over O(3), by seeded simulated annealing on a sample of
@@ -226,31 +154,20 @@ pub unsafe extern "C" fn ofc_orthogonal_annealing(
     workspace_bytes: usize,
     found: *mut ofc_orthogonal,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (test, test_extent) = accepted_by(inliers, &picture)?;
-        let (root, root_extent) = input_array::<f64, 9>(root)?;
-        let (tilts, tilts_extent) = optional_tilts(tilt_rad)?;
-        let (params, params_extent) = input(params)?;
-        let params = params.check()?;
-        let view = &picture.view;
-        let need = float_bytes(annealing::workspace_len(view.width() * view.height(), params.sample_cells));
-        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
-        let out = Out::new(found)?;
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(
-            &[scratch, out.extent],
-            &[a, b, c, d, e, test_extent, root_extent, tilts_extent, params_extent],
-        )?;
-        let root = finite_matrix(root)?;
-        // SAFETY: checked and disjoint.
-        let scratch = unsafe { floats(workspace, need) };
-        let result = annealing::annealing(view, test.selector(), &root, tilts, &params, scratch);
-        out.write(result.map_err(of_orthogonal_error)?.into());
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let test = call.inliers(inliers, &picture)?;
+        let root = Mat3::from_c(call.input_array(root)?)?;
+        let tilts = optional_tilts(call, tilt_rad)?;
+        let params: Params = call.params(params)?;
+        let need = annealing::workspace_len(picture.width() * picture.height(), params.sample_cells);
+        let workspace = call.floats(workspace, workspace_bytes, need)?;
+        let result = call.output(found)?;
+        let found = annealing::annealing(&picture, test.selector(), &root, tilts, &params, workspace)?;
+        *result = found.to_c();
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
 /// The orthogonal transformation in closed form: the smoothness condition (16) gives r3 as an eigenvector, and the one
@@ -276,25 +193,18 @@ pub unsafe extern "C" fn ofc_orthogonal_closed_form(
     polish_evaluations: u32,
     found: *mut ofc_orthogonal,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (test, test_extent) = accepted_by(inliers, &picture)?;
-        let (root, root_extent) = input_array::<f64, 9>(root)?;
-        let (tilts, tilts_extent) = optional_tilts(tilt_rad)?;
-        let out = Out::new(found)?;
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(&[out.extent], &[a, b, c, d, e, test_extent, root_extent, tilts_extent])?;
-        let root = finite_matrix(root)?;
-        if polish_evaluations > annealing::MAX_EVALUATIONS {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        let result =
-            closed_form::closed_form(&picture.view, test.selector(), &root, tilts, polish_evaluations);
-        out.write(result.map_err(of_orthogonal_error)?.into());
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let test = call.inliers(inliers, &picture)?;
+        let root = Mat3::from_c(call.input_array(root)?)?;
+        let tilts = optional_tilts(call, tilt_rad)?;
+        let result = call.output(found)?;
+        ensure(polish_evaluations <= annealing::MAX_EVALUATIONS, OFC_STATUS_INVALID_PARAMETER)?;
+        let found = closed_form::closed_form(&picture, test.selector(), &root, tilts, polish_evaluations)?;
+        *result = found.to_c();
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
 /// Bytes of workspace that ofc_constrained_slants_integrable() needs: 36 for each cell.
@@ -306,7 +216,7 @@ pub extern "C" fn ofc_constrained_slants_integrable_workspace_size(
     height: i32,
     sample_cells: u32,
 ) -> usize {
-    float_bytes(tilts_given::workspace_len(pixel_count(width, height), sample_cells))
+    bytes(Need::of_singles(tilts_given::workspace_len(pixel_count(width, height), sample_cells)))
 }
 
 /// The slants that make the integral (15) smallest, given the tilts and norms of the rows of F, among those that eqs. 24
@@ -340,41 +250,26 @@ pub unsafe extern "C" fn ofc_constrained_slants_integrable(
     workspace_bytes: usize,
     slants: *mut ofc_slants,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (test, test_extent) = accepted_by(inliers, &picture)?;
-        let (norms, norms_extent) = input_array::<f64, 3>(norms)?;
-        let (tilts, tilts_extent) = input_array::<f64, 3>(tilt_rad)?;
-        let (cosines, cosines_extent) = input_array::<f64, 3>(cosines)?;
-        if sample_cells == 0 {
-            extent(workspace.cast_const().cast::<f64>(), 1)?;
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        let view = &picture.view;
-        let need = float_bytes(tilts_given::workspace_len(view.width() * view.height(), sample_cells));
-        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
-        let out = Out::new(slants)?;
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(
-            &[scratch, out.extent],
-            &[a, b, c, d, e, test_extent, norms_extent, tilts_extent, cosines_extent],
-        )?;
-        crate::slants::are_valid(tilts, cosines)?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let test = call.inliers(inliers, &picture)?;
+        let norms = call.input_array(norms)?;
+        let (tilts, cosines) = call.tilts_and_cosines(tilt_rad, cosines)?;
+        ensure(sample_cells > 0, OFC_STATUS_INVALID_PARAMETER)?;
+        let need = tilts_given::workspace_len(picture.width() * picture.height(), sample_cells);
+        let workspace = call.floats(workspace, workspace_bytes, need)?;
+        let slants = call.output(slants)?;
         let params = tilts_given::Params { slack, sample_cells };
-        // SAFETY: checked and disjoint.
-        let scratch = unsafe { floats(workspace, need) };
         let bits = |window: &_| test.bits(window);
-        let found = tilts_given::tilts_given(view, bits, norms, cosines, tilts, &params, scratch)
-            .map_err(of_orthogonal_error)?;
-        out.write(ofc_slants {
+        let found = tilts_given::tilts_given(&picture, bits, norms, cosines, tilts, &params, workspace)?;
+        *slants = ofc_slants {
             slant_rad: found.slants,
             residual: found.residual_rms,
             integral: found.integral.mean,
             branch: 0,
             reserved: 0,
-        });
+        };
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }

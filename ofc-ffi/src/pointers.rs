@@ -1,12 +1,17 @@
-//! The fence: every raw pointer from C becomes a value, a slice or an [`Out`] here, checked, or an error status.
+//! The fence: whatever a call from C hands over becomes a value, a slice or a reference here, or the call is refused.
 //!
-//! What C hands us is memory of unknown contents but of types for which every bit pattern is a value (integers, floats
-//! and structs of them), so a checked address and length is all a reference needs.
+//! C hands over memory of types for which every bit pattern is a value (integers, floats and structs of them), so a checked
+//! address and length is all that a reference needs. A [`Call`] remembers the bytes of everything that it has given out,
+//! and gives out nothing that overlaps bytes which are written.
 
 use crate::status::{
     OFC_STATUS_MISALIGNED, OFC_STATUS_NULL_POINTER, OFC_STATUS_OVERLAP, OFC_STATUS_TOO_LARGE,
-    OFC_STATUS_WORKSPACE_TOO_SMALL, ofc_status,
+    OFC_STATUS_WORKSPACE_TOO_SMALL, Refusal, ensure, ofc_status,
 };
+use crate::twin::FromC;
+use core::ffi::c_void;
+use core::marker::PhantomData;
+use core::mem::MaybeUninit;
 use core::slice;
 use ofc_core::math::arena::{Arena, Need};
 
@@ -17,160 +22,259 @@ pub const OFC_WORKSPACE_ALIGNMENT: usize = 8;
 ///
 /// # Safety
 /// Implemented for integers, floats, raw pointers and `repr(C)` structs of them only.
-pub unsafe trait Plain: Copy {}
-// SAFETY: every bit pattern is a value.
-unsafe impl Plain for u8 {}
-// SAFETY: as above.
-unsafe impl Plain for f32 {}
-// SAFETY: as above.
-unsafe impl Plain for f64 {}
-// SAFETY: as above.
-unsafe impl Plain for i32 {}
-// SAFETY: as above.
-unsafe impl Plain for u32 {}
-// SAFETY: as above.
-unsafe impl Plain for u64 {}
-// SAFETY: as its elements, and arrays have no gaps.
+pub unsafe trait Plain: Copy + 'static {}
+
+/// Says that types are [`Plain`]: numbers, or `repr(C)` structs of numbers and raw pointers.
+macro_rules! plain {
+    ($($name:ty),+ $(,)?) => {
+        // SAFETY: numbers and raw pointers alone, of which every bit pattern is a value.
+        $(unsafe impl $crate::pointers::Plain for $name {})+
+    };
+}
+pub(crate) use plain;
+
+plain!(u8, u16, u32, u64, i32, f32, f64);
+// SAFETY: arrays have no gaps between their elements.
 unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}
 
-/// The bytes a call reads or writes, to be compared with the others of the same call.
+/// The promise of a C caller: what the header says of the pointers of a call is true.
+pub struct Contract(());
+
+impl Contract {
+    /// # Safety
+    /// Every pointer that the call is given is NULL, or memory as large as the header says lies there, which stays as it is
+    /// during the call but for what the call writes, and which nobody else writes or, where the call writes it, reads.
+    pub const unsafe fn kept() -> Self {
+        Self(())
+    }
+
+    /// Runs the body of a call, and returns its status.
+    pub fn call(self, body: impl for<'a> FnOnce(&mut Call<'a>) -> Result<ofc_status, Refusal>) -> ofc_status {
+        match body(&mut Call::new(self)) {
+            Ok(status) | Err(Refusal(status)) => status,
+        }
+    }
+
+    /// Runs the body of a call that returns how many bytes something needs; 0 where it is refused or they are too many.
+    pub fn size(self, body: impl for<'a> FnOnce(&mut Call<'a>) -> Result<Need, Refusal>) -> usize {
+        body(&mut Call::new(self)).map_or(0, bytes)
+    }
+}
+
+/// The bytes of so many numbers, 0 where there are none or too many.
+pub fn bytes(need: Need) -> usize {
+    let bytes = need.bytes();
+    if isize::try_from(bytes).is_ok() { bytes } else { 0 }
+}
+
+/// What `take` makes of a pointer that may be NULL.
+pub fn unless_null<T, R>(
+    pointer: *const T,
+    take: impl FnOnce() -> Result<R, Refusal>,
+) -> Result<Option<R>, Refusal> {
+    if pointer.is_null() { Ok(None) } else { take().map(Some) }
+}
+
+/// Bytes that a call uses.
 #[derive(Clone, Copy)]
-pub struct Extent {
+struct Extent {
     start: usize,
     bytes: usize,
 }
 
 impl Extent {
-    /// No bytes: what an output that the caller does not want occupies.
-    pub const NOTHING: Self = Self { start: 0, bytes: 0 };
-
-    /// How many bytes.
-    pub const fn bytes(self) -> usize {
-        self.bytes
-    }
-
     const fn overlaps(self, other: Self) -> bool {
         self.start < other.start.saturating_add(other.bytes)
             && other.start < self.start.saturating_add(self.bytes)
     }
 }
 
-/// The bytes of `count` values at `pointer`, after all checks that need no look at the memory.
-pub fn extent<T>(pointer: *const T, count: usize) -> Result<Extent, ofc_status> {
-    if pointer.is_null() {
-        return Err(OFC_STATUS_NULL_POINTER);
-    }
-    if !pointer.is_aligned() {
-        return Err(OFC_STATUS_MISALIGNED);
-    }
-    let start = pointer.addr();
-    match count.checked_mul(size_of::<T>()) {
-        Some(bytes) if isize::try_from(bytes).is_ok() && start.checked_add(bytes).is_some() => {
-            Ok(Extent { start, bytes })
-        }
-        _ => Err(OFC_STATUS_TOO_LARGE),
-    }
-}
+/// No call uses more buffers: ofc_flat_field() with masks and planes.
+const MOST_BUFFERS: usize = 12;
 
-/// An error if one of the bytes `written` is also written by another or read.
-pub fn disjoint(written: &[Extent], read: &[Extent]) -> Result<(), ofc_status> {
-    let overlaps = written
-        .iter()
-        .enumerate()
-        .any(|(i, output)| written.iter().skip(i + 1).chain(read).any(|other| output.overlaps(*other)));
-    if overlaps { Err(OFC_STATUS_OVERLAP) } else { Ok(()) }
-}
-
-/// A struct or number that the call reads: copied, so that nothing written later can change it.
-pub fn input<T: Plain>(pointer: *const T) -> Result<(T, Extent), ofc_status> {
-    let extent = extent(pointer, 1)?;
-    // SAFETY: not null, aligned, one value of a plain type; that it can be read is the caller's part of the contract.
-    Ok((unsafe { pointer.read() }, extent))
-}
-
-/// A small array that the call reads, copied.
-pub fn input_array<T: Plain, const N: usize>(pointer: *const T) -> Result<([T; N], Extent), ofc_status> {
-    let extent = extent(pointer, N)?;
-    // SAFETY: as for `input`, N values without gaps.
-    Ok((unsafe { pointer.cast::<[T; N]>().read() }, extent))
-}
-
-/// Values that the call reads.
-///
-/// # Safety
-/// Nobody writes them during the call; the lifetime is the call's.
-pub unsafe fn input_slice<'a, T: Plain>(
-    pointer: *const T,
+/// A call under way: it turns the caller's pointers into what they point to.
+pub struct Call<'a> {
+    extents: [Extent; MOST_BUFFERS],
     count: usize,
-) -> Result<(&'a [T], Extent), ofc_status> {
-    let extent = extent(pointer, count)?;
-    // SAFETY: not null, aligned, `count` plain values within the address space.
-    Ok((unsafe { slice::from_raw_parts(pointer, count) }, extent))
+    /// A bit for each extent: whether it is written.
+    written: u32,
+    buffers: PhantomData<&'a mut [u8]>,
 }
 
-/// Values that the call writes.
+impl<'a> Call<'a> {
+    const fn new(Contract(()): Contract) -> Self {
+        let nothing = Extent { start: 0, bytes: 0 };
+        Self { extents: [nothing; MOST_BUFFERS], count: 0, written: 0, buffers: PhantomData }
+    }
+
+    /// Remembers bytes that lie apart from those the call has already, as far as one of both is written.
+    #[inline(never)]
+    fn claim(&mut self, start: usize, bytes: usize, written: bool) -> Result<(), Refusal> {
+        ensure(isize::try_from(bytes).is_ok() && start.checked_add(bytes).is_some(), OFC_STATUS_TOO_LARGE)?;
+        let extent = Extent { start, bytes };
+        let mut others = self.extents.iter().enumerate();
+        let apart =
+            others.all(|(i, other)| !(written || self.written >> i & 1 == 1) || !extent.overlaps(*other));
+        ensure(apart, OFC_STATUS_OVERLAP)?;
+        *self.extents.get_mut(self.count).ok_or(OFC_STATUS_TOO_LARGE)? = extent;
+        self.written |= u32::from(written) << self.count;
+        self.count += 1;
+        Ok(())
+    }
+
+    /// Claims `count` values.
+    fn claim_values<T>(&mut self, pointer: *const T, count: usize, written: bool) -> Result<(), Refusal> {
+        let start = address(pointer.addr(), align_of::<T>())?;
+        self.claim(start, count.checked_mul(size_of::<T>()).ok_or(OFC_STATUS_TOO_LARGE)?, written)
+    }
+
+    /// Claims `need` bytes of a workspace that holds `bytes`.
+    fn claim_workspace(&mut self, pointer: *mut c_void, bytes: usize, need: usize) -> Result<(), Refusal> {
+        ensure(need > 0, OFC_STATUS_TOO_LARGE)?;
+        let start = address(pointer.addr(), OFC_WORKSPACE_ALIGNMENT)?;
+        ensure(bytes >= need, OFC_STATUS_WORKSPACE_TOO_SMALL)?;
+        self.claim(start, need, true)
+    }
+
+    /// A struct, number or array of a fixed length that the call reads: copied, so that nothing written later can change it.
+    pub fn input<T: Plain>(&mut self, pointer: *const T) -> Result<T, Refusal> {
+        self.claim_values(pointer, 1, false)?;
+        // SAFETY: not null, aligned, one value of a plain type; that it can be read is in the contract.
+        Ok(unsafe { pointer.read() })
+    }
+
+    /// `N` numbers that the call reads, copied.
+    pub fn input_array<T: Plain, const N: usize>(&mut self, pointer: *const T) -> Result<[T; N], Refusal> {
+        self.input(pointer.cast())
+    }
+
+    /// Parameters as the core has them.
+    pub fn params<C: Plain, T: FromC<C>>(&mut self, pointer: *const C) -> Result<T, Refusal> {
+        T::from_c(self.input(pointer)?)
+    }
+
+    /// Values that the call reads.
+    pub fn input_slice<T: Plain>(&mut self, pointer: *const T, count: usize) -> Result<&'a [T], Refusal> {
+        self.claim_values(pointer, count, false)?;
+        // SAFETY: not null, aligned, `count` plain values that nothing in the call writes, nor anybody else by the contract.
+        Ok(unsafe { slice::from_raw_parts(pointer, count) })
+    }
+
+    /// Bytes that the call reads, aligned as a `T` is.
+    pub fn input_bytes<T>(&mut self, pointer: *const T, bytes: usize) -> Result<&'a [u8], Refusal> {
+        address(pointer.addr(), align_of::<T>())?;
+        self.input_slice(pointer.cast(), bytes)
+    }
+
+    /// A struct, number or array of a fixed length that the call writes at its very end, on success.
+    pub fn output<T: Plain>(&mut self, pointer: *mut T) -> Result<&'a mut T, Refusal> {
+        self.claim_values(pointer, 1, true)?;
+        // SAFETY: not null, aligned, one plain value that nothing else in the call uses, nor anybody else by the contract.
+        Ok(unsafe { &mut *pointer })
+    }
+
+    /// `N` numbers that the call writes.
+    pub fn output_array<T: Plain, const N: usize>(
+        &mut self,
+        pointer: *mut T,
+    ) -> Result<&'a mut [T; N], Refusal> {
+        self.output(pointer.cast())
+    }
+
+    /// Values that the call writes.
+    pub fn output_slice<T: Plain>(&mut self, pointer: *mut T, count: usize) -> Result<&'a mut [T], Refusal> {
+        self.claim_values(pointer, count, true)?;
+        // SAFETY: as for `output`, `count` values.
+        Ok(unsafe { slice::from_raw_parts_mut(pointer, count) })
+    }
+
+    /// Bytes that the call writes.
+    pub fn output_bytes(&mut self, pointer: *mut c_void, bytes: usize) -> Result<&'a mut [u8], Refusal> {
+        self.output_slice(pointer.cast(), bytes)
+    }
+
+    /// The first `count` floats of a workspace of so many bytes.
+    pub fn floats(
+        &mut self,
+        pointer: *mut c_void,
+        bytes: usize,
+        count: usize,
+    ) -> Result<&'a mut [f32], Refusal> {
+        self.arena(pointer, bytes, Need::of_singles(count))?
+            .singles(count)
+            .ok_or(Refusal(OFC_STATUS_TOO_LARGE))
+    }
+
+    /// A workspace of so many bytes as typed slices, in the order of [`Need::bytes`].
+    pub fn arena(&mut self, pointer: *mut c_void, bytes: usize, need: Need) -> Result<Arena<'a>, Refusal> {
+        self.claim_workspace(pointer, bytes, self::bytes(need))?;
+        // SAFETY: aligned; so many bytes are there, and nothing else uses them.
+        Ok(unsafe { cut(pointer.cast(), need) })
+    }
+
+    /// Memory of so many bytes, for an object that begins with an `H`: where to write that, and the object's address.
+    pub fn memory<H, O>(
+        &mut self,
+        pointer: *mut c_void,
+        bytes: usize,
+        need: usize,
+    ) -> Result<(&'a mut MaybeUninit<H>, *mut O), Refusal> {
+        const { assert!(align_of::<H>() <= OFC_WORKSPACE_ALIGNMENT) };
+        ensure(need == 0 || need >= size_of::<H>(), OFC_STATUS_TOO_LARGE)?;
+        self.claim_workspace(pointer, bytes, need)?;
+        // SAFETY: aligned, and as long as an `H`, of which no byte need be a value yet.
+        Ok((unsafe { &mut *pointer.cast() }, pointer.cast()))
+    }
+
+    /// An object's `H`, the numbers that this `H` needs, and some bytes.
+    ///
+    /// The object begins with a `T`, of which `sizes` makes how many bytes of numbers lie behind the first `head` bytes, and how
+    /// many more bytes behind those.
+    ///
+    /// # Safety
+    /// `sizes` refuses a `T` unless [`Call::memory`] has been asked for that much memory and an `H` has been written there.
+    pub unsafe fn object<H, T: Plain>(
+        &mut self,
+        object: *mut impl Sized,
+        head: usize,
+        sizes: impl FnOnce(T) -> Result<(usize, usize), Refusal>,
+        need: impl FnOnce(&H) -> Need,
+    ) -> Result<(&'a mut H, Arena<'a>, &'a mut [u8]), Refusal> {
+        const { assert!(align_of::<T>() <= OFC_WORKSPACE_ALIGNMENT) };
+        let start = address(object.addr(), OFC_WORKSPACE_ALIGNMENT)?;
+        // SAFETY: aligned; that it can be read is in the contract.
+        let (numbers, bytes) = sizes(unsafe { object.cast::<T>().read() })?;
+        self.claim(start, numbers.saturating_add(bytes).saturating_add(head), true)?;
+        // SAFETY: the caller's promise; the three lie apart, and nothing else in the call uses them.
+        unsafe {
+            let (first, object) = (object.byte_add(head), &mut *object.cast::<H>());
+            let need = need(object);
+            ensure(need.bytes() <= numbers, OFC_STATUS_WORKSPACE_TOO_SMALL)?;
+            let bytes = slice::from_raw_parts_mut(first.byte_add(numbers).cast(), bytes);
+            Ok((object, cut(first.cast(), need), bytes))
+        }
+    }
+}
+
+/// Numbers of each type, one type behind the other.
 ///
 /// # Safety
-/// Nobody else uses them during the call, which has also checked that they are [`disjoint`] from its other buffers.
-pub unsafe fn output_slice<'a, T: Plain>(pointer: *mut T, count: usize) -> &'a mut [T] {
-    // SAFETY: `extent` has been asked for the same pointer and count.
-    unsafe { slice::from_raw_parts_mut(pointer, count) }
-}
-
-/// A workspace of at least `need` bytes, seen as floats once its bytes are known to be disjoint from everything else.
-pub fn workspace(pointer: *mut f64, bytes: usize, need: usize) -> Result<Extent, ofc_status> {
-    if need == 0 {
-        return Err(OFC_STATUS_TOO_LARGE);
-    }
-    let aligned = extent(pointer, 1)?;
-    if bytes < need {
-        return Err(OFC_STATUS_WORKSPACE_TOO_SMALL);
-    }
-    Ok(Extent { bytes: need, ..aligned })
-}
-
-/// The caller's workspace as typed slices, in the order of [`Need::bytes`].
-///
-/// # Safety
-/// [`workspace`] has been asked for the same pointer and for `need.bytes()`, and its bytes are [`disjoint`] from everything
-/// else in the call.
-#[expect(dead_code, reason = "stages take it one after the other")]
-pub unsafe fn arena<'a>(pointer: *mut f64, need: Need) -> Arena<'a> {
-    let Need { doubles, singles, integers } = need;
-    // SAFETY: that many bytes are there; doubles come first, and what follows has half of their alignment.
+/// So many bytes are there, and nobody else uses them.
+unsafe fn cut<'a>(first: *mut f64, Need { doubles, singles, integers }: Need) -> Arena<'a> {
+    // SAFETY: the caller's promise; what follows the doubles has half of their alignment.
     unsafe {
-        let first = pointer.add(doubles).cast::<f32>();
+        let second = first.add(doubles).cast::<f32>();
         Arena::new(
-            output_slice(pointer, doubles),
-            output_slice(first, singles),
-            output_slice(first.add(singles).cast::<u32>(), integers),
+            slice::from_raw_parts_mut(first, doubles),
+            slice::from_raw_parts_mut(second, singles),
+            slice::from_raw_parts_mut(second.add(singles).cast(), integers),
         )
     }
 }
 
-/// A struct or array that the call writes at its very end, on success.
-#[derive(Clone, Copy)]
-pub struct Out<T> {
-    pointer: *mut T,
-    /// The bytes it occupies.
-    pub extent: Extent,
-}
-
-impl<T: Plain> Out<T> {
-    /// Checks the address.
-    pub fn new(pointer: *mut T) -> Result<Self, ofc_status> {
-        Ok(Self { pointer, extent: extent(pointer.cast_const(), 1)? })
-    }
-
-    /// Where the value goes, for large ones: made in place, without a copy on the stack. What is there is not a value yet.
-    pub fn place<'a>(self) -> &'a mut T {
-        // SAFETY: as for `write`; any bytes are a plain value.
-        unsafe { &mut *self.pointer }
-    }
-
-    /// Writes the value.
-    pub fn write(self, value: T) {
-        // SAFETY: checked when made; that it can be written is the caller's part of the contract.
-        unsafe { self.pointer.write(value) }
-    }
+/// An address that is not null and a multiple of the alignment.
+fn address(address: usize, alignment: usize) -> Result<usize, Refusal> {
+    ensure(address != 0, OFC_STATUS_NULL_POINTER)?;
+    ensure(address.is_multiple_of(alignment), OFC_STATUS_MISALIGNED)?;
+    Ok(address)
 }

@@ -1,37 +1,18 @@
 //! From colors to C: the regression, the location of the norms, the inliers and the ellipsoid.
 
-use crate::image::{dimension, image, ofc_image};
-use crate::pointers::{
-    Extent, Out, disjoint, extent, input, input_array, input_slice, output_slice, workspace,
-};
+use crate::image::{checked_pixel_count, ofc_image, pixel_count};
+use crate::pointers::{Contract, bytes, unless_null};
 use crate::status::{
-    OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_OK,
-    OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_TOO_LARGE, of, of_fit_error, ofc_status,
+    OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, OFC_STATUS_TOO_FEW_PIXELS,
+    OFC_STATUS_TOO_LARGE, ensure, ofc_status,
 };
+use crate::twin::ToC;
 use crate::types::{ofc_color_fit, ofc_ellipsoid, ofc_inliers, ofc_lmeds_params, ofc_location};
 use core::ffi::c_void;
 use ofc_core::color::inliers::{Band, Inliers};
 use ofc_core::color::{ellipsoid, lmeds, location, norms};
+use ofc_core::math::arena::Need;
 use ofc_core::picture::{MAX_PIXELS, Usable};
-
-/// Bytes of so many floats, 0 where there are none or too many.
-pub(crate) fn float_bytes(count: usize) -> usize {
-    count.checked_mul(size_of::<f32>()).filter(|&bytes| isize::try_from(bytes).is_ok()).unwrap_or(0)
-}
-
-/// Pixels of a picture, 0 where there are none or too many.
-pub(crate) fn pixel_count(width: i32, height: i32) -> usize {
-    dimension(width).checked_mul(dimension(height)).filter(|&pixels| pixels <= MAX_PIXELS).unwrap_or(0)
-}
-
-/// A workspace as floats.
-///
-/// # Safety
-/// As [`output_slice`]; the extent comes from [`workspace`].
-pub(crate) unsafe fn floats<'a>(pointer: *mut c_void, bytes: usize) -> &'a mut [f32] {
-    // SAFETY: eight-byte alignment is enough for floats; `bytes` have been checked.
-    unsafe { output_slice(pointer.cast::<f32>(), bytes / size_of::<f32>()) }
-}
 
 /// Sets every field to its default.
 ///
@@ -39,10 +20,11 @@ pub(crate) unsafe fn floats<'a>(pointer: *mut c_void, bytes: usize) -> &'a mut [
 /// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_lmeds_params_default(params: *mut ofc_lmeds_params) -> ofc_status {
-    of(Out::new(params).map(|out| {
-        out.write(ofc_lmeds_params::defaults());
-        OFC_STATUS_OK
-    }))
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        *call.output(params)? = lmeds::Params::default().to_c();
+        Ok(OFC_STATUS_OK)
+    })
 }
 
 /// The number of random six-pixel subsets of which, with probability `confidence`, at least one holds no outlier when
@@ -66,11 +48,12 @@ pub unsafe extern "C" fn ofc_lmeds_workspace_size(
     height: i32,
     params: *const ofc_lmeds_params,
 ) -> usize {
-    let Ok((params, _)) = input(params).and_then(|(params, _)| params.check()) else { return 0 };
-    match pixel_count(width, height) {
-        0 => 0,
-        pixels => float_bytes(lmeds::workspace_len(pixels, params.sample_size)),
-    }
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.size(|call| {
+        let (params, _): (lmeds::Params, _) = call.params(params)?;
+        let pixels = checked_pixel_count(width, height)?;
+        Ok(Need::of_singles(lmeds::workspace_len(pixels, params.sample_size)))
+    })
 }
 
 /// Least median of squares (LMS in the paper) for the color-space quadratic form, and the reweighted fit over its
@@ -95,26 +78,19 @@ pub unsafe extern "C" fn ofc_lmeds_fit(
     fit: *mut ofc_color_fit,
     inliers: *mut ofc_inliers,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (own, params_extent) = input(params)?;
-        let (params, saturation) = own.check()?;
-        let view = &picture.view;
-        let need = float_bytes(lmeds::workspace_len(view.width() * view.height(), params.sample_size));
-        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
-        let (fit, inliers) = (Out::new(fit)?, Out::new(inliers)?);
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(&[scratch, fit.extent, inliers.extent], &[a, b, c, d, e, params_extent])?;
-        let usable = Usable::below(saturation.unwrap_or(view.sample().saturation()));
-        // SAFETY: checked and disjoint.
-        let result =
-            lmeds::fit(view, usable, &params, unsafe { floats(workspace, need) }).map_err(of_fit_error)?;
-        fit.write((&result).into());
-        inliers.write(Inliers { residual: result.band, ..Inliers::all(usable) }.into());
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let (params, saturation): (lmeds::Params, _) = call.params(params)?;
+        let need = lmeds::workspace_len(picture.width() * picture.height(), params.sample_size);
+        let workspace = call.floats(workspace, workspace_bytes, need)?;
+        let (fit, inliers) = (call.output(fit)?, call.output(inliers)?);
+        let usable = Usable::below(saturation.unwrap_or(picture.sample().saturation()));
+        let found = lmeds::fit(&picture, usable, &params, workspace)?;
+        *fit = found.to_c();
+        *inliers = Inliers { residual: found.band, ..Inliers::all(usable) }.to_c();
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
 /// Bytes of workspace that ofc_location_fit() needs for so many values: 8 each.
@@ -122,7 +98,7 @@ pub unsafe extern "C" fn ofc_lmeds_fit(
 /// @return The size, or 0 when there are no or too many values.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_location_workspace_size(count: usize) -> usize {
-    count.checked_mul(2).map_or(0, float_bytes)
+    count.checked_mul(2).map_or(0, |singles| bytes(Need::of_singles(singles)))
 }
 
 /// The one-dimensional least median of squares: the midpoint of the shortest interval that holds half of the values.
@@ -144,33 +120,21 @@ pub unsafe extern "C" fn ofc_location_fit(
     workspace_bytes: usize,
     location: *mut ofc_location,
 ) -> ofc_status {
-    let body = || {
-        extent(values, 1)?;
-        if count < 2 {
-            return Err(OFC_STATUS_EMPTY);
-        }
-        if count > MAX_PIXELS {
-            return Err(OFC_STATUS_TOO_LARGE);
-        }
-        // SAFETY: the contract of this function.
-        let (values, values_extent) = unsafe { input_slice(values, count) }?;
-        let need = ofc_location_workspace_size(count);
-        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
-        let out = Out::new(location)?;
-        disjoint(&[scratch, out.extent], &[values_extent])?;
-        if !values.iter().all(|value| value.is_finite()) {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        // SAFETY: checked and disjoint.
-        let (sorted, rest) =
-            unsafe { floats(workspace, need) }.split_at_mut_checked(count).unwrap_or_default();
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        ensure(values.is_null() || count >= 2, OFC_STATUS_EMPTY)?;
+        ensure(count <= MAX_PIXELS, OFC_STATUS_TOO_LARGE)?;
+        let values = call.input_slice(values, count)?;
+        let workspace = call.floats(workspace, workspace_bytes, count * 2)?;
+        let location = call.output(location)?;
+        ensure(values.iter().all(|value| value.is_finite()), OFC_STATUS_INVALID_PARAMETER)?;
+        let (sorted, rest) = workspace.split_at_mut_checked(count).unwrap_or_default();
         for (slot, &value) in sorted.iter_mut().zip(values) {
             *slot = value;
         }
-        out.write(location::shortest_half(sorted, rest).ok_or(OFC_STATUS_EMPTY)?.into());
+        *location = location::shortest_half(sorted, rest).ok_or(OFC_STATUS_EMPTY)?.to_c();
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
 /// Bytes of workspace that ofc_norm_location() needs: 8 a pixel.
@@ -178,7 +142,7 @@ pub unsafe extern "C" fn ofc_location_fit(
 /// @return The size, or 0 when an argument is invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_norm_location_workspace_size(width: i32, height: i32) -> usize {
-    float_bytes(pixel_count(width, height) * 2)
+    bytes(Need::of_singles(pixel_count(width, height) * 2))
 }
 
 /// The second rejection: where the lengths of the normals lie, and the inliers whose normal is that long.
@@ -206,35 +170,22 @@ pub unsafe extern "C" fn ofc_norm_location(
     location: *mut ofc_location,
     accepted: *mut ofc_inliers,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (form, form_extent) = input_array::<f64, 6>(coefficients)?;
-        let (inliers, inliers_extent) = input(inliers)?;
-        let need = ofc_norm_location_workspace_size(
-            crate::types::count(picture.view.width()),
-            crate::types::count(picture.view.height()),
-        );
-        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
-        let (location, accepted) = (Out::new(location)?, Out::new(accepted)?);
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(
-            &[scratch, location.extent, accepted.extent],
-            &[a, b, c, d, e, form_extent, inliers_extent],
-        )?;
-        if !(rejection > 0.0 && rejection.is_finite() && form.iter().all(|c| c.is_finite())) {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        let inliers = inliers.into_core();
-        // SAFETY: checked and disjoint.
-        let scratch = unsafe { floats(workspace, need) };
-        let found =
-            norms::location(&picture.view, &inliers, &form, scratch).ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
-        location.write(found.into());
-        accepted.write(Inliers { norm: Band::norm(form, &found, rejection), ..inliers }.into());
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let form = call.input_array::<f64, 6>(coefficients)?;
+        let inliers: Inliers = call.params(inliers)?;
+        let need = picture.width() * picture.height() * 2;
+        let workspace = call.floats(workspace, workspace_bytes, need)?;
+        let (location, accepted) = (call.output(location)?, call.output(accepted)?);
+        let finite = rejection.is_finite() && form.iter().all(|c| c.is_finite());
+        ensure(finite && rejection > 0.0, OFC_STATUS_INVALID_PARAMETER)?;
+        let found = norms::location(&picture, &inliers, &form, workspace);
+        let found = found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
+        *location = found.to_c();
+        *accepted = Inliers { norm: Band::norm(form, &found, rejection), ..inliers }.to_c();
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
 /// Writes 255 for every pixel that the test accepts and 0 for every other.
@@ -254,36 +205,18 @@ pub unsafe extern "C" fn ofc_inliers_mark(
     mask: *mut u8,
     count: *mut i32,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (test, test_extent) = accepted_by(inliers, &picture)?;
-        let pixels = picture.view.width() * picture.view.height();
-        let mask_extent = extent(mask.cast_const(), pixels)?;
-        let count = if count.is_null() { None } else { Some(Out::new(count)?) };
-        let [a, b, c, d, e] = picture.extents;
-        let count_extent = count.as_ref().map_or(Extent::NOTHING, |count| count.extent);
-        disjoint(&[mask_extent, count_extent], &[a, b, c, d, e, test_extent])?;
-        // SAFETY: checked and disjoint.
-        test.mark(&picture.view, unsafe { output_slice(mask, pixels) });
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let test = call.inliers(inliers, &picture)?;
+        let mask = call.output_slice(mask, picture.width() * picture.height())?;
+        let count = unless_null(count, || call.output(count))?;
+        test.mark(&picture, mask);
         if let Some(count) = count {
-            count.write(crate::types::count(test.count(&picture.view)));
+            *count = test.count(&picture).to_c();
         }
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
-}
-
-/// The test at `inliers`, or every usable pixel of the picture where it is NULL, and the bytes it was read from.
-pub(crate) fn accepted_by(
-    inliers: *const ofc_inliers,
-    picture: &crate::image::CheckedImage,
-) -> Result<(Inliers, Extent), ofc_status> {
-    if inliers.is_null() {
-        let [own, ..] = picture.extents;
-        return Ok((Inliers::all(Usable::below(picture.view.sample().saturation())), own));
-    }
-    input(inliers).map(|(test, extent)| (test.into_core(), extent))
+    })
 }
 
 /// C and what follows from it: its eigenvalues, a root, F F^T = C^-1, and the norms and cosines of the rows of F.
@@ -299,15 +232,12 @@ pub unsafe extern "C" fn ofc_ellipsoid_decompose(
     coefficients: *const f64,
     ellipsoid: *mut ofc_ellipsoid,
 ) -> ofc_status {
-    let body = || {
-        let (form, form_extent) = input_array::<f64, 6>(coefficients)?;
-        let out = Out::new(ellipsoid)?;
-        disjoint(&[out.extent], &[form_extent])?;
-        if !form.iter().all(|c| c.is_finite()) {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        out.write(ellipsoid::decompose(&form).map_err(|_| OFC_STATUS_NOT_POSITIVE_DEFINITE)?.into());
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let form = call.input_array::<f64, 6>(coefficients)?;
+        let ellipsoid = call.output(ellipsoid)?;
+        ensure(form.iter().all(|c| c.is_finite()), OFC_STATUS_INVALID_PARAMETER)?;
+        *ellipsoid = ellipsoid::decompose(&form)?.to_c();
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }

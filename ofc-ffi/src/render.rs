@@ -1,16 +1,16 @@
 //! The forward model.
 
 use crate::image::{dimension, interleaved_layout, ofc_pixel_format};
-use crate::pointers::{Extent, Out, Plain, disjoint, extent, input, input_slice, output_slice};
+use crate::pointers::{Call, Contract, plain, unless_null};
 use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO, of,
-    of_image_error, ofc_status,
+    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO,
+    Refusal, ensure, ofc_status,
 };
-use crate::types::flat;
+use crate::twin::{ToC, from_c, to_c};
 use core::ffi::c_void;
 use ofc_core::math::mat3::scale;
 use ofc_core::picture::span;
-use ofc_core::render::{self, Canvas, DepthMap, DepthMapError, Lights, Outputs, Params, RenderError, Rows};
+use ofc_core::render::{self, Canvas, DepthMap, Lights, Outputs, Params, Rows};
 
 /// Lights at most.
 pub const OFC_MAX_LIGHTS: usize = 32;
@@ -79,29 +79,10 @@ pub struct ofc_rendering {
     pub f: [f64; 9],
 }
 
-// SAFETY: integers, floats and raw pointers.
-unsafe impl Plain for ofc_depth_map {}
-// SAFETY: as above.
-unsafe impl Plain for ofc_lights {}
-// SAFETY: as above.
-unsafe impl Plain for ofc_render_params {}
-// SAFETY: as above.
-unsafe impl Plain for ofc_rendering {}
+plain!(ofc_depth_map, ofc_lights, ofc_render_params, ofc_rendering);
 
-impl ofc_render_params {
-    fn check(self) -> Result<Params, ofc_status> {
-        let Self { peak, noise, seed, cast_shadows, reserved } = self;
-        if reserved != [0; 5] {
-            return Err(OFC_STATUS_RESERVED_NOT_ZERO);
-        }
-        let cast_shadows = match cast_shadows {
-            0 => false,
-            1 => true,
-            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
-        };
-        Ok(Params { cast_shadows, peak, noise, seed })
-    }
-}
+to_c!(Params => ofc_render_params { peak, noise, seed, cast_shadows } zero { reserved });
+from_c!(Params <= ofc_render_params { peak, noise, seed, cast_shadows } zero { reserved });
 
 /// Sets every field to its default.
 ///
@@ -109,30 +90,11 @@ impl ofc_render_params {
 /// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_render_params_default(params: *mut ofc_render_params) -> ofc_status {
-    of(Out::new(params).map(|out| {
-        let Params { cast_shadows, peak, noise, seed } = Params::default();
-        let cast_shadows = i32::from(cast_shadows);
-        out.write(ofc_render_params { peak, noise, seed, cast_shadows, reserved: [0; 5] });
-        OFC_STATUS_OK
-    }))
-}
-
-/// The rows of an output of so many four-byte values a pixel, or none where the pointer is NULL.
-fn output_rows<T>(
-    pointer: *mut T,
-    values: usize,
-    width: usize,
-    height: usize,
-    stride_bytes: usize,
-) -> Result<Option<Extent>, ofc_status> {
-    if pointer.is_null() {
-        return Ok(None);
-    }
-    if !stride_bytes.is_multiple_of(size_of::<T>()) {
-        return Err(OFC_STATUS_MISALIGNED);
-    }
-    let bytes = span(width, height, values * size_of::<T>(), stride_bytes).map_err(of_image_error)?;
-    extent(pointer.cast_const(), bytes / size_of::<T>()).map(Some)
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        *call.output(params)? = Params::default().to_c();
+        Ok(OFC_STATUS_OK)
+    })
 }
 
 /// Renders a depth map under coloured lights: eq. 5 with attached and cast shadows, scaling, noise and quantisation.
@@ -170,103 +132,53 @@ pub unsafe extern "C" fn ofc_render(
     normals_stride_bytes: usize,
     rendering: *mut ofc_rendering,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let (surface, [depth_own, depth_extent, mask_extent]) = unsafe { surface(depth) }?;
-        let (own, lights_extent) = input(lights)?;
-        if own.reserved != 0 {
-            return Err(OFC_STATUS_RESERVED_NOT_ZERO);
-        }
-        let count = dimension(own.count);
-        if count == 0 || count > OFC_MAX_LIGHTS {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        // SAFETY: the contract of this function.
-        let ((a, a_extent), (b, b_extent)) =
-            unsafe { (input_slice(own.directions, count * 3)?, input_slice(own.colors, count * 3)?) };
-        let (params, params_extent) = input(params)?;
-        let params = params.check()?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let surface = call.surface(depth)?;
+        let lights = call.lights(lights)?;
+        let params: Params = call.params(params)?;
         let (sample, order) = interleaved_layout(format)?;
         let (width, height) = (surface.width(), surface.height());
-        let picture_bytes = span(width, height, order.samples() * sample.bytes(), pixels_stride_bytes)
-            .map_err(of_image_error)?;
-        let picture_extent = extent(pixels.cast::<u8>().cast_const(), picture_bytes)?;
-        let seen_extent = output_rows(seen, 1, width, height, seen_stride_bytes)?;
-        let normals_extent = output_rows(normals, 3, width, height, normals_stride_bytes)?;
-        let out = Out::new(rendering)?;
-        let nothing = Extent::NOTHING;
-        disjoint(
-            &[picture_extent, seen_extent.unwrap_or(nothing), normals_extent.unwrap_or(nothing), out.extent],
-            &[depth_own, depth_extent, mask_extent, lights_extent, a_extent, b_extent, params_extent],
-        )?;
-        let lights = Lights::new(a, b).map_err(|_| OFC_STATUS_INVALID_PARAMETER)?;
-        // SAFETY: checked and disjoint.
-        let outputs = unsafe {
-            Outputs {
-                picture: Canvas::new(
-                    output_slice(pixels.cast::<u8>(), picture_bytes),
-                    width,
-                    height,
-                    pixels_stride_bytes,
-                    sample,
-                    order,
-                )
-                .map_err(of_image_error)?,
-                seen: seen_extent.map(|extent| Rows {
-                    values: output_slice(seen, extent.bytes() / size_of::<u32>()),
-                    row_stride: seen_stride_bytes / size_of::<u32>(),
-                }),
-                normals: normals_extent.map(|extent| Rows {
-                    values: output_slice(normals, extent.bytes() / size_of::<f32>()),
-                    row_stride: normals_stride_bytes / size_of::<f32>(),
-                }),
-            }
-        };
-        let found = render::render(&surface, &lights, &params, outputs).map_err(of_render_error)?;
+        let bytes = span(width, height, order.samples() * sample.bytes(), pixels_stride_bytes)?;
+        let pixels = call.output_bytes(pixels, bytes)?;
+        let picture = Canvas::new(pixels, width, height, pixels_stride_bytes, sample, order)?;
+        let size = [width, height];
+        let seen = unless_null(seen, || call.output_rows(seen, size, 1, seen_stride_bytes))?;
+        let seen = seen.map(|(values, row_stride)| Rows { values, row_stride });
+        let normals = unless_null(normals, || call.output_rows(normals, size, 3, normals_stride_bytes))?;
+        let normals = normals.map(|(values, row_stride)| Rows { values, row_stride });
+        let rendering = call.output(rendering)?;
+        let found = render::render(&surface, &lights, &params, Outputs { picture, seen, normals })?;
         let f = lights.orientation().map(|row| scale(row, found.scale));
-        out.write(ofc_rendering { largest: found.largest, scale: found.scale, f: flat(&f) });
+        *rendering = ofc_rendering { largest: found.largest, scale: found.scale, f: f.to_c() };
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
-const fn of_render_error(error: RenderError) -> ofc_status {
-    match error {
-        RenderError::NonFiniteDepth | RenderError::Peak | RenderError::Noise | RenderError::Size => {
-            OFC_STATUS_INVALID_PARAMETER
+impl<'a> Call<'a> {
+    /// A depth map.
+    pub(crate) fn surface(&mut self, pointer: *const ofc_depth_map) -> Result<DepthMap<'a>, Refusal> {
+        let map = self.input(pointer)?;
+        let (width, height, stride) = (dimension(map.width), dimension(map.height), map.row_stride_bytes);
+        let bytes = span(width, height, size_of::<f32>(), stride)?;
+        ensure(stride.is_multiple_of(size_of::<f32>()), OFC_STATUS_MISALIGNED)?;
+        let depths = self.input_bytes(map.depth, bytes)?;
+        let view = DepthMap::new(depths, width, height, stride, map.pixel_pitch)?;
+        if map.mask.is_null() {
+            return Ok(view);
         }
+        let mask = self.input_slice(map.mask, span(width, height, 1, map.mask_stride_bytes)?)?;
+        Ok(view.with_mask(mask, map.mask_stride_bytes)?)
     }
-}
 
-/// Checks a depth map.
-///
-/// # Safety
-/// The depths and the mask can be read and are not written during the call.
-pub(crate) unsafe fn surface<'a>(
-    pointer: *const ofc_depth_map,
-) -> Result<(DepthMap<'a>, [Extent; 3]), ofc_status> {
-    let (map, own) = input(pointer)?;
-    let (width, height) = (dimension(map.width), dimension(map.height));
-    let bytes = span(width, height, size_of::<f32>(), map.row_stride_bytes).map_err(of_image_error)?;
-    if !map.row_stride_bytes.is_multiple_of(size_of::<f32>()) {
-        return Err(OFC_STATUS_MISALIGNED);
+    /// Lights.
+    fn lights(&mut self, pointer: *const ofc_lights) -> Result<Lights<'a>, Refusal> {
+        let lights = self.input(pointer)?;
+        ensure(lights.reserved == 0, OFC_STATUS_RESERVED_NOT_ZERO)?;
+        let count = dimension(lights.count);
+        ensure((1..=OFC_MAX_LIGHTS).contains(&count), OFC_STATUS_INVALID_PARAMETER)?;
+        let directions = self.input_slice(lights.directions, count * 3)?;
+        let colors = self.input_slice(lights.colors, count * 3)?;
+        Ok(Lights::new(directions, colors).map_err(|_| OFC_STATUS_INVALID_PARAMETER)?)
     }
-    extent(map.depth, bytes / size_of::<f32>())?;
-    // SAFETY: the caller's promise.
-    let (depths, depth_extent) = unsafe { input_slice(map.depth.cast::<u8>(), bytes) }?;
-    let view =
-        DepthMap::new(depths, width, height, map.row_stride_bytes, map.pixel_pitch).map_err(|error| {
-            match error {
-                DepthMapError::Image(error) => of_image_error(error),
-                DepthMapError::Pitch => OFC_STATUS_INVALID_PARAMETER,
-            }
-        })?;
-    if map.mask.is_null() {
-        return Ok((view, [own, depth_extent, own]));
-    }
-    let bytes = span(width, height, 1, map.mask_stride_bytes).map_err(of_image_error)?;
-    // SAFETY: the caller's promise.
-    let (mask, mask_extent) = unsafe { input_slice(map.mask, bytes) }?;
-    let view = view.with_mask(mask, map.mask_stride_bytes).map_err(of_image_error)?;
-    Ok((view, [own, depth_extent, mask_extent]))
 }

@@ -1,16 +1,14 @@
 //! Segmentation: pictures with more than one material or light environment.
 
 use crate::check::ofc_rank;
-use crate::image::{dimension, image, ofc_image};
-use crate::pointers::{Out, Plain, disjoint, extent, input, input_slice, output_slice, workspace};
-use crate::regression::pixel_count;
-use crate::status::{
-    OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO,
-    OFC_STATUS_TOO_LARGE, OFC_STATUS_WORKSPACE_TOO_SMALL, of, ofc_status,
-};
-use crate::types::count;
+use crate::image::{checked_pixel_count, dimension, ofc_image, pixel_count};
+use crate::pointers::{Contract, bytes, plain};
+use crate::status::{OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, Refusal, ensure, ofc_status};
+use crate::twin::{FromC, ToC, from_c, to_c};
+use crate::types::saturation;
 use core::ffi::c_void;
-use ofc_core::color::segment::{self, MAX_REGIONS, Params, Region, SegmentError, patches};
+use ofc_core::color::segment::{self, MAX_REGIONS, Params, Region, patches};
+use ofc_core::math::arena::Need;
 use ofc_core::picture::Usable;
 
 /// Regions at most.
@@ -65,70 +63,29 @@ pub struct ofc_region {
     pub reserved: u32,
 }
 
-// SAFETY: integers and floats.
-unsafe impl Plain for ofc_segment_params {}
-// SAFETY: as above.
-unsafe impl Plain for ofc_region {}
-// SAFETY: an integer.
-unsafe impl Plain for u16 {}
+plain!(ofc_segment_params, ofc_region);
 
-impl ofc_segment_params {
-    fn defaults() -> Self {
-        let Params { tolerance, min_pixels, max_regions, blocks, spacing, reach, refits, seed } =
-            Params::default();
-        let (saturation, reserved) = (0.0, [0; 4]);
-        Self {
-            tolerance,
-            saturation,
-            seed,
-            min_pixels,
-            max_regions,
-            blocks,
-            spacing,
-            reach,
-            refits,
-            reserved,
-        }
-    }
+to_c!(Params => ofc_segment_params {
+    tolerance, seed, min_pixels, max_regions, blocks, spacing, reach, refits
+} zero { saturation, reserved });
+from_c!(Params <= ofc_segment_params {
+    tolerance, seed, min_pixels, max_regions, blocks, spacing, reach, refits
+} without { saturation } zero { reserved } where are_valid);
 
-    fn check(self) -> Result<(Params, Option<f32>), ofc_status> {
-        let Self {
-            tolerance,
-            saturation,
-            seed,
-            min_pixels,
-            max_regions,
-            blocks,
-            spacing,
-            reach,
-            refits,
-            reserved,
-        } = self;
-        if reserved != [0; 4] {
-            return Err(OFC_STATUS_RESERVED_NOT_ZERO);
-        }
-        let params = Params { tolerance, min_pixels, max_regions, blocks, spacing, reach, refits, seed };
-        if !params.are_valid() || saturation.is_nan() || saturation < 0.0 {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        Ok((params, (saturation > 0.0).then_some(saturation as f32)))
+/// The parameters and the saturation level, if one is set.
+impl FromC<ofc_segment_params> for (Params, Option<f32>) {
+    fn from_c(value: ofc_segment_params) -> Result<Self, Refusal> {
+        Ok((Params::from_c(value)?, saturation(value.saturation)?))
     }
 }
 
-impl From<&Region> for ofc_region {
-    fn from(region: &Region) -> Self {
-        let Region { label, pixels, coefficients, residual_deviation, rank, block, spacing } = *region;
-        Self {
-            coefficients,
-            residual_deviation,
-            rank: rank.map_or(ofc_rank::default(), ofc_rank::from),
-            pixel_count: count(pixels),
-            label: i32::from(label),
-            block: block.map(u32::cast_signed),
-            spacing: spacing.cast_signed(),
-            reserved: 0,
-        }
-    }
+to_c!(Region => ofc_region {
+    coefficients, residual_deviation, rank, label, block, spacing; pixel_count: pixels
+} zero { reserved });
+
+/// The workspace of a picture: its colors, and a queue of its pixels.
+fn need(pixels: usize) -> Need {
+    Need { doubles: 0, singles: segment::colors_len(pixels), integers: pixels }
 }
 
 /// Sets every field to its default.
@@ -137,10 +94,11 @@ impl From<&Region> for ofc_region {
 /// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_segment_params_default(params: *mut ofc_segment_params) -> ofc_status {
-    of(Out::new(params).map(|out| {
-        out.write(ofc_segment_params::defaults());
-        OFC_STATUS_OK
-    }))
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        *call.output(params)? = Params::default().to_c();
+        Ok(OFC_STATUS_OK)
+    })
 }
 
 /// Bytes of workspace that ofc_segment() needs: 16 a pixel.
@@ -148,7 +106,7 @@ pub unsafe extern "C" fn ofc_segment_params_default(params: *mut ofc_segment_par
 /// @return The size, or 0 when an argument is invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_segment_workspace_size(width: i32, height: i32) -> usize {
-    pixel_count(width, height).checked_mul(16).filter(|&bytes| isize::try_from(bytes).is_ok()).unwrap_or(0)
+    bytes(need(pixel_count(width, height)))
 }
 
 /// Finds regions that share a C: each begins at six contiguous pixels and grows as far as the tolerance allows. Where a
@@ -175,50 +133,25 @@ pub unsafe extern "C" fn ofc_segment(
     regions: *mut ofc_region,
     count: *mut i32,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (params, params_extent) = input(params)?;
-        let (params, saturation) = params.check()?;
-        let view = &picture.view;
-        let pixels = view.width() * view.height();
-        let need = pixels
-            .checked_mul(16)
-            .filter(|&bytes| isize::try_from(bytes).is_ok())
-            .ok_or(OFC_STATUS_TOO_LARGE)?;
-        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
-        let labels_extent = extent(labels.cast_const(), pixels)?;
-        let regions_extent = extent(regions.cast_const(), OFC_MAX_REGIONS)?;
-        let out = Out::new(count)?;
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(&[scratch, labels_extent, regions_extent, out.extent], &[a, b, c, d, e, params_extent])?;
-        let usable = Usable::below(saturation.unwrap_or(view.sample().saturation()));
-        let colors_len = segment::colors_len(pixels);
-        // SAFETY: checked and disjoint; the workspace holds three floats a pixel and then one integer a pixel.
-        let (colors, queue, labels, regions) = unsafe {
-            (
-                output_slice(workspace.cast::<f32>(), colors_len),
-                output_slice(workspace.cast::<u32>().add(colors_len), pixels),
-                output_slice(labels, pixels),
-                output_slice(regions, OFC_MAX_REGIONS),
-            )
-        };
-        let found =
-            segment::segment(view, usable, &params, labels, colors, queue).map_err(of_segment_error)?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let (params, saturation): (Params, _) = call.params(params)?;
+        let pixels = picture.width() * picture.height();
+        let mut workspace = call.arena(workspace, workspace_bytes, need(pixels))?;
+        let colors = workspace.singles(segment::colors_len(pixels)).unwrap_or_default();
+        let queue = workspace.integers(pixels).unwrap_or_default();
+        let labels = call.output_slice(labels, pixels)?;
+        let regions = call.output_slice(regions, OFC_MAX_REGIONS)?;
+        let count = call.output(count)?;
+        let usable = Usable::below(saturation.unwrap_or(picture.sample().saturation()));
+        let found = segment::segment(&picture, usable, &params, labels, colors, queue)?;
         for (slot, region) in regions.iter_mut().zip(&found) {
-            *slot = region.into();
+            *slot = region.to_c();
         }
-        out.write(crate::types::count(found.len()));
+        *count = found.len().to_c();
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
-}
-
-const fn of_segment_error(error: SegmentError) -> ofc_status {
-    match error {
-        SegmentError::Params => OFC_STATUS_INVALID_PARAMETER,
-        SegmentError::LabelsTooShort | SegmentError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
-    }
+    })
 }
 
 /// Turns one label into a mask for ofc_image: 255 where a pixel has it, 0 elsewhere.
@@ -237,24 +170,15 @@ pub unsafe extern "C" fn ofc_segment_mark(
     label: i32,
     mask: *mut u8,
 ) -> ofc_status {
-    let body = || {
-        let pixels = pixel_count(width, height);
-        if dimension(width) == 0 || dimension(height) == 0 {
-            return Err(OFC_STATUS_EMPTY);
-        }
-        if pixels == 0 {
-            return Err(OFC_STATUS_TOO_LARGE);
-        }
-        // SAFETY: the contract of this function.
-        let (labels, labels_extent) = unsafe { input_slice(labels, pixels) }?;
-        disjoint(&[extent(mask.cast_const(), pixels)?], &[labels_extent])?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let pixels = checked_pixel_count(width, height)?;
+        let labels = call.input_slice(labels, pixels)?;
+        let mask = call.output_slice(mask, pixels)?;
         let label = u16::try_from(label).ok().filter(|&label| label > 0);
-        let label = label.ok_or(OFC_STATUS_INVALID_PARAMETER)?;
-        // SAFETY: checked and disjoint.
-        segment::mark(labels, label, unsafe { output_slice(mask, pixels) });
+        segment::mark(labels, label.ok_or(OFC_STATUS_INVALID_PARAMETER)?, mask);
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
 /// Patches in a row (and, with height for width, in a column) of a picture: width over side, rounded up; 0 for a width
@@ -262,7 +186,7 @@ pub unsafe extern "C" fn ofc_segment_mark(
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_rank_patches_count(width: i32, side: i32) -> i32 {
     let [across, _] = patches::shape(dimension(width), 1, dimension(side));
-    count(across)
+    across.to_c()
 }
 
 /// Classifies a picture's patches by the rank of their colors.
@@ -282,24 +206,17 @@ pub unsafe extern "C" fn ofc_rank_patches(
     noise: f64,
     ranks: *mut u8,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (view, side) = (&picture.view, dimension(side));
-        let [across, down] = patches::shape(view.width(), view.height(), side.max(patches::MIN_SIDE));
-        let ranks_extent = extent(ranks.cast_const(), across * down)?;
-        let [a, b, c, d, e] = picture.extents;
-        disjoint(&[ranks_extent], &[a, b, c, d, e])?;
-        let valid =
-            (patches::MIN_SIDE..=patches::MAX_SIDE).contains(&side) && noise > 0.0 && noise.is_finite();
-        if !valid {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        let usable = Usable::below(view.sample().saturation());
-        // SAFETY: checked and disjoint.
-        let ranks = unsafe { output_slice(ranks, across * down) };
-        patches::patches(view, usable, side, noise, ranks).map_err(|_| OFC_STATUS_INVALID_PARAMETER)?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let side = dimension(side);
+        let [across, down] = patches::shape(picture.width(), picture.height(), side.max(patches::MIN_SIDE));
+        let ranks = call.output_slice(ranks, across * down)?;
+        let in_range = (patches::MIN_SIDE..=patches::MAX_SIDE).contains(&side);
+        ensure(in_range && noise > 0.0 && noise.is_finite(), OFC_STATUS_INVALID_PARAMETER)?;
+        let usable = Usable::below(picture.sample().saturation());
+        let made = patches::patches(&picture, usable, side, noise, ranks);
+        made.map_err(|_| OFC_STATUS_INVALID_PARAMETER)?;
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }

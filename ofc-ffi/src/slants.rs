@@ -1,23 +1,35 @@
 //! Slants from tilts and angles.
 
-use crate::pointers::{Out, disjoint, extent, input_array, output_slice};
+use crate::image::dimension;
+use crate::pointers::{Call, Contract};
 use crate::status::{
     OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_CONSISTENT_SLANTS, OFC_STATUS_OK,
-    OFC_STATUS_TOO_LARGE, of, ofc_status,
+    OFC_STATUS_TOO_LARGE, Refusal, ensure, ofc_status,
 };
+use crate::twin::{ToC, to_c};
 use crate::types::ofc_slants;
 use core::f64::consts::FRAC_PI_2;
-use ofc_core::light::constrained_slant::{self, CurvePoint};
+use ofc_core::light::constrained_slant::{self, CurvePoint, MAX_CANDIDATES, SlantRoot};
 
 /// No more slants than this are consistent with three tilts and three cosines.
 pub const OFC_MAX_CANDIDATES: usize = 8;
-const _: () =
-    assert!(OFC_MAX_CANDIDATES == constrained_slant::MAX_CANDIDATES, "the header says what the core does");
+const _: () = assert!(OFC_MAX_CANDIDATES == MAX_CANDIDATES, "the header says what the core does");
 
-/// A tilt is any finite angle, a cosine is in [-1, 1].
-pub(crate) fn are_valid(tilts: [f64; 3], cosines: [f64; 3]) -> Result<(), ofc_status> {
-    let valid = tilts.iter().all(|tilt| tilt.is_finite()) && cosines.iter().all(|h| (-1.0..=1.0).contains(h));
-    if valid { Ok(()) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
+to_c!(SlantRoot => ofc_slants { residual, branch; slant_rad: slants } zero { integral, reserved });
+
+impl Call<'_> {
+    /// Three tilts, which are any finite angles, and three cosines in [-1, 1].
+    pub(crate) fn tilts_and_cosines(
+        &mut self,
+        tilt_rad: *const f64,
+        cosines: *const f64,
+    ) -> Result<([f64; 3], [f64; 3]), Refusal> {
+        let tilts = self.input_array::<f64, 3>(tilt_rad)?;
+        let cosines = self.input_array::<f64, 3>(cosines)?;
+        ensure(tilts.iter().all(|tilt| tilt.is_finite()), OFC_STATUS_INVALID_PARAMETER)?;
+        ensure(cosines.iter().all(|h| (-1.0..=1.0).contains(h)), OFC_STATUS_INVALID_PARAMETER)?;
+        Ok((tilts, cosines))
+    }
 }
 
 /// All slants in [0, pi/2] that are consistent with three tilts and the angles between the rows of F: every solution of
@@ -39,29 +51,18 @@ pub unsafe extern "C" fn ofc_constrained_slants_find(
     candidates: *mut ofc_slants,
     count: *mut i32,
 ) -> ofc_status {
-    let body = || {
-        let (tilts, tilts_extent) = input_array::<f64, 3>(tilt_rad)?;
-        let (cosines, cosines_extent) = input_array::<f64, 3>(cosines)?;
-        let candidates_extent = extent(candidates.cast_const(), OFC_MAX_CANDIDATES)?;
-        let count = Out::new(count)?;
-        disjoint(&[candidates_extent, count.extent], &[tilts_extent, cosines_extent])?;
-        are_valid(tilts, cosines)?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let (tilts, cosines) = call.tilts_and_cosines(tilt_rad, cosines)?;
+        let candidates = call.output_slice(candidates, OFC_MAX_CANDIDATES)?;
+        let count = call.output(count)?;
         let roots = constrained_slant::roots(tilts, cosines);
-        // SAFETY: checked and disjoint.
-        let out = unsafe { output_slice(candidates, OFC_MAX_CANDIDATES) };
-        for (slot, root) in out.iter_mut().zip(&roots) {
-            *slot = ofc_slants {
-                slant_rad: root.slants,
-                residual: root.residual,
-                integral: 0.0,
-                branch: i32::from(root.branch),
-                reserved: 0,
-            };
+        for (slot, root) in candidates.iter_mut().zip(&roots) {
+            *slot = root.to_c();
         }
-        count.write(crate::types::count(roots.len()));
+        *count = roots.len().to_c();
         Ok(if roots.is_empty() { OFC_STATUS_NO_CONSISTENT_SLANTS } else { OFC_STATUS_OK })
-    };
-    of(body())
+    })
 }
 
 /// The slants in [0, pi/2] that satisfy eqs. 24 best in least squares: what solve falls back on where they have no
@@ -79,23 +80,18 @@ pub unsafe extern "C" fn ofc_constrained_slants_nearest(
     cosines: *const f64,
     slants: *mut ofc_slants,
 ) -> ofc_status {
-    let body = || {
-        let (tilts, tilts_extent) = input_array::<f64, 3>(tilt_rad)?;
-        let (cosines, cosines_extent) = input_array::<f64, 3>(cosines)?;
-        let out = Out::new(slants)?;
-        disjoint(&[out.extent], &[tilts_extent, cosines_extent])?;
-        are_valid(tilts, cosines)?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let (tilts, cosines) = call.tilts_and_cosines(tilt_rad, cosines)?;
+        let slants = call.output(slants)?;
         let nearest = constrained_slant::least_squares(tilts, cosines);
-        out.write(ofc_slants {
+        *slants = ofc_slants {
             slant_rad: nearest.slants,
             residual: nearest.residuals.iter().fold(0.0, |largest, residual| residual.abs().max(largest)),
-            integral: 0.0,
-            branch: 0,
-            reserved: 0,
-        });
+            ..ofc_slants::default()
+        };
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
 /// Samples f(sigma1) on one branch of eqs. 25, the curve of Figures 2 and 4(a): where it meets sigma1 itself is a
@@ -121,22 +117,15 @@ pub unsafe extern "C" fn ofc_slant_curve_sample(
     slant_rad: *mut f64,
     f_rad: *mut f64,
 ) -> ofc_status {
-    let body = || {
-        let (tilts, tilts_extent) = input_array::<f64, 3>(tilt_rad)?;
-        let (cosines, cosines_extent) = input_array::<f64, 3>(cosines)?;
-        let samples = crate::image::dimension(count);
-        let values = samples.checked_mul(3).ok_or(OFC_STATUS_TOO_LARGE)?;
-        let (slant_extent, f_extent) =
-            (extent(slant_rad.cast_const(), values)?, extent(f_rad.cast_const(), samples)?);
-        disjoint(&[slant_extent, f_extent], &[tilts_extent, cosines_extent])?;
-        if samples < 2 {
-            return Err(OFC_STATUS_EMPTY);
-        }
-        are_valid(tilts, cosines)?;
-        let branch =
-            u8::try_from(branch).ok().filter(|b| (1..=8).contains(b)).ok_or(OFC_STATUS_INVALID_PARAMETER)?;
-        // SAFETY: checked and disjoint.
-        let (slants, values) = unsafe { (output_slice(slant_rad, values), output_slice(f_rad, samples)) };
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let (tilts, cosines) = call.tilts_and_cosines(tilt_rad, cosines)?;
+        let samples = dimension(count);
+        let slants = call.output_slice(slant_rad, samples.checked_mul(3).ok_or(OFC_STATUS_TOO_LARGE)?)?;
+        let values = call.output_slice(f_rad, samples)?;
+        ensure(samples >= 2, OFC_STATUS_EMPTY)?;
+        let branch = u8::try_from(branch).ok().filter(|b| (1..=8).contains(b));
+        let branch = branch.ok_or(OFC_STATUS_INVALID_PARAMETER)?;
         for (i, (slants, value)) in slants.as_chunks_mut::<3>().0.iter_mut().zip(values).enumerate() {
             let sigma1 = FRAC_PI_2 * i as f64 / (samples - 1) as f64;
             let nothing = CurvePoint { slants: [sigma1, f64::NAN, f64::NAN], f: f64::NAN };
@@ -144,6 +133,5 @@ pub unsafe extern "C" fn ofc_slant_curve_sample(
             (*slants, *value) = (point.slants, point.f);
         }
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }

@@ -1,24 +1,24 @@
 //! The whole pipeline.
 
 use crate::check::ofc_rank;
-use crate::image::{image, ofc_image};
+use crate::image::{checked_pixel_count, ofc_image};
 use crate::light::{
     OFC_TILT_CHOJNACKI, OFC_TILT_GIVEN, OFC_TILT_LEE_ROSENFELD, OFC_TILT_PENTLAND, OFC_TILT_ZHENG_CHELLAPPA,
     ofc_tilt_estimator,
 };
-use crate::pointers::{Extent, Out, Plain, disjoint, extent, input, output_slice, workspace};
-use crate::regression::{float_bytes, floats, pixel_count};
+use crate::pointers::{Contract, plain, unless_null};
 use crate::slants::OFC_MAX_CANDIDATES;
 use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO, of, of_fit_error, of_outcome,
-    ofc_status,
+    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO, Refusal, ensure, ofc_status,
 };
+use crate::twin::{FromC, ToC, constants, to_c};
 use crate::types::{
-    count, flat, ofc_color_fit, ofc_ellipsoid, ofc_inliers, ofc_lmeds_params, ofc_location, ofc_orientation,
+    ofc_color_fit, ofc_ellipsoid, ofc_inliers, ofc_lmeds_params, ofc_location, ofc_orientation,
     ofc_pixel_counts, ofc_slants, ofc_tilts,
 };
 use core::ffi::c_void;
 use ofc_core::light::tilt::TiltEstimator;
+use ofc_core::math::arena::Need;
 use ofc_core::orientation::joint::{Evidence, Joint};
 use ofc_core::solve::{
     self, Candidate, Choice, OrientationMethod, Params, ShadowRejection, SlantFallback, SlantSource, Solution,
@@ -176,116 +176,93 @@ pub struct ofc_solution {
     pub orientation: ofc_orientation,
 }
 
-// SAFETY: integers and floats.
-unsafe impl Plain for ofc_solve_params {}
-// SAFETY: as above.
-unsafe impl Plain for ofc_confidence {}
-// SAFETY: as above.
-unsafe impl Plain for ofc_solution {}
+plain!(ofc_solve_params, ofc_confidence, ofc_solution);
 
-impl ofc_solve_params {
-    pub(crate) fn defaults() -> Self {
-        let Params {
-            lmeds: _,
-            saturation: _,
-            shadow_rejection: _,
-            orientation_method: _,
-            tilts: _,
-            rank_threshold,
-            fallback: _,
-        } = Params::default();
-        Self {
-            lmeds: ofc_lmeds_params::defaults(),
-            rank_threshold,
+constants!(SlantSource = {
+    Root: OFC_SLANTS_ROOT,
+    LeastSquares: OFC_SLANTS_LEAST_SQUARES,
+    TiltIntegrability: OFC_SLANTS_TILT_INTEGRABILITY,
+    Pentland: OFC_SLANTS_PENTLAND,
+    LeeRosenfeld: OFC_SLANTS_LEE_ROSENFELD,
+    ZhengChellappa: OFC_SLANTS_ZHENG_CHELLAPPA,
+    Joint: OFC_SLANTS_JOINT,
+});
+constants!(OrientationMethod = { Joint: OFC_ORIENTATION_JOINT, Direct: OFC_ORIENTATION_DIRECT });
+constants!(ShadowRejection = {
+    Auto: OFC_SHADOW_REJECTION_AUTO,
+    On: OFC_SHADOW_REJECTION_ON,
+    Off: OFC_SHADOW_REJECTION_OFF,
+});
+constants!(Evidence = {
+    Outward: OFC_EVIDENCE_OUTWARD,
+    Integrability: OFC_EVIDENCE_INTEGRABILITY,
+    Both: OFC_EVIDENCE_BOTH,
+});
+constants!(SlantFallback = {
+    Refuse: OFC_FALLBACK_REFUSE,
+    LeastSquares: OFC_FALLBACK_LEAST_SQUARES,
+    TiltIntegrability: OFC_FALLBACK_TILT_INTEGRABILITY,
+    PentlandSlant: OFC_FALLBACK_PENTLAND,
+    LeeRosenfeldSlant: OFC_FALLBACK_LEE_ROSENFELD,
+    ZhengChellappaSlant: OFC_FALLBACK_ZHENG_CHELLAPPA,
+});
+
+/// The defaults, in which no tilts are given and no saturation level is set.
+impl ToC<ofc_solve_params> for Params {
+    fn to_c(&self) -> ofc_solve_params {
+        ofc_solve_params {
+            lmeds: self.lmeds.to_c(),
+            rank_threshold: self.rank_threshold,
             tilt_rad: [0.0; 3],
             tilt_estimator: OFC_TILT_PENTLAND,
-            slant_fallback: OFC_FALLBACK_LEAST_SQUARES,
-            orientation_method: OFC_ORIENTATION_JOINT,
-            shadow_rejection: OFC_SHADOW_REJECTION_AUTO,
+            slant_fallback: self.fallback.to_c(),
+            orientation_method: self.orientation_method.to_c(),
+            shadow_rejection: self.shadow_rejection.to_c(),
             reserved: [0; 4],
         }
     }
+}
 
-    pub(crate) fn check(self) -> Result<Params, ofc_status> {
-        let Self {
-            lmeds,
-            rank_threshold,
-            tilt_rad,
-            tilt_estimator,
-            slant_fallback,
-            orientation_method,
-            shadow_rejection,
-            reserved,
-        } = self;
-        if reserved != [0; 4] {
-            return Err(OFC_STATUS_RESERVED_NOT_ZERO);
-        }
-        let (lmeds, saturation) = lmeds.check()?;
-        let fallback = match slant_fallback {
-            OFC_FALLBACK_REFUSE => SlantFallback::Refuse,
-            OFC_FALLBACK_LEAST_SQUARES => SlantFallback::LeastSquares,
-            OFC_FALLBACK_TILT_INTEGRABILITY => SlantFallback::TiltIntegrability,
-            OFC_FALLBACK_PENTLAND => SlantFallback::PentlandSlant,
-            OFC_FALLBACK_LEE_ROSENFELD => SlantFallback::LeeRosenfeldSlant,
-            OFC_FALLBACK_ZHENG_CHELLAPPA => SlantFallback::ZhengChellappaSlant,
-            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
-        };
-        let tilts = match tilt_estimator {
-            OFC_TILT_PENTLAND => TiltEstimator::Pentland,
-            OFC_TILT_LEE_ROSENFELD => TiltEstimator::LeeRosenfeld,
-            OFC_TILT_ZHENG_CHELLAPPA => TiltEstimator::ZhengChellappa,
-            OFC_TILT_CHOJNACKI => TiltEstimator::Chojnacki,
-            OFC_TILT_GIVEN => TiltEstimator::Given(tilt_rad),
-            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
-        };
-        let orientation_method = match orientation_method {
-            OFC_ORIENTATION_JOINT => OrientationMethod::Joint,
-            OFC_ORIENTATION_DIRECT => OrientationMethod::Direct,
-            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
-        };
-        let shadow_rejection = match shadow_rejection {
-            OFC_SHADOW_REJECTION_AUTO => ShadowRejection::Auto,
-            OFC_SHADOW_REJECTION_ON => ShadowRejection::On,
-            OFC_SHADOW_REJECTION_OFF => ShadowRejection::Off,
-            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
-        };
-        let params = Params {
+impl FromC<ofc_solve_params> for Params {
+    fn from_c(value: ofc_solve_params) -> Result<Self, Refusal> {
+        ensure(value.reserved == [0; 4], OFC_STATUS_RESERVED_NOT_ZERO)?;
+        let (lmeds, saturation) = FromC::from_c(value.lmeds)?;
+        let params = Self {
             lmeds,
             saturation,
-            shadow_rejection,
-            orientation_method,
-            tilts,
-            rank_threshold,
-            fallback,
+            shadow_rejection: FromC::from_c(value.shadow_rejection)?,
+            orientation_method: FromC::from_c(value.orientation_method)?,
+            tilts: match value.tilt_estimator {
+                OFC_TILT_PENTLAND => TiltEstimator::Pentland,
+                OFC_TILT_LEE_ROSENFELD => TiltEstimator::LeeRosenfeld,
+                OFC_TILT_ZHENG_CHELLAPPA => TiltEstimator::ZhengChellappa,
+                OFC_TILT_CHOJNACKI => TiltEstimator::Chojnacki,
+                OFC_TILT_GIVEN => TiltEstimator::Given(value.tilt_rad),
+                _ => return Err(Refusal(OFC_STATUS_INVALID_PARAMETER)),
+            },
+            rank_threshold: value.rank_threshold,
+            fallback: FromC::from_c(value.slant_fallback)?,
         };
-        if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
+        ensure(params.are_valid(), OFC_STATUS_INVALID_PARAMETER)?;
+        Ok(params)
     }
 }
 
-impl From<Joint> for ofc_confidence {
-    fn from(joint: Joint) -> Self {
-        let Joint { rows: _, covariance, evidence, convexity, second_best } = joint;
-        Self {
-            covariance: flat(&covariance),
-            error_rad: joint.expected_error(),
-            convexity,
-            second_best,
-            evidence: match evidence {
-                Evidence::Outward => OFC_EVIDENCE_OUTWARD,
-                Evidence::Integrability => OFC_EVIDENCE_INTEGRABILITY,
-                Evidence::Both => OFC_EVIDENCE_BOTH,
-            },
+impl ToC<ofc_confidence> for Joint {
+    fn to_c(&self) -> ofc_confidence {
+        let Self { rows: _, covariance, evidence, convexity, second_best } = self;
+        ofc_confidence {
+            covariance: covariance.to_c(),
+            error_rad: self.expected_error(),
+            convexity: *convexity,
+            second_best: *second_best,
+            evidence: evidence.to_c(),
             reserved: 0,
         }
     }
 }
 
-impl From<Candidate> for ofc_slants {
-    fn from(candidate: Candidate) -> Self {
-        let Candidate { slants, branch, residual, integral } = candidate;
-        Self { slant_rad: slants, residual, integral, branch: i32::from(branch), reserved: 0 }
-    }
-}
+to_c!(Candidate => ofc_slants { residual, integral, branch; slant_rad: slants } zero { reserved });
 
 impl ofc_solution {
     /// Sets every field, one after the other: together they would lie on the stack twice.
@@ -305,17 +282,17 @@ impl ofc_solution {
             joint,
             choice,
         } = solution;
-        self.outcome = of_outcome(*outcome);
-        self.inlier_count = count(*inlier_count);
-        self.pixel_counts = (*pixel_counts).into();
-        self.fit = fit.as_ref().map_or(ofc_color_fit::default(), ofc_color_fit::from);
+        self.outcome = outcome.to_c();
+        self.inlier_count = inlier_count.to_c();
+        self.pixel_counts = pixel_counts.to_c();
+        self.fit = fit.to_c();
         self.fit.color_deviations = fit.as_ref().map_or(*color_deviations, |fit| fit.color_deviations);
-        self.rank = rank.map_or(ofc_rank::default(), ofc_rank::from);
-        self.norm_location = norm_location.map_or(ofc_location::default(), ofc_location::from);
-        self.inliers = (*inliers).into();
-        self.ellipsoid = ellipsoid.map_or(ofc_ellipsoid::default(), ofc_ellipsoid::from);
-        self.tilts = tilts.map_or(ofc_tilts::default(), ofc_tilts::from);
-        self.confidence = joint.map_or(ofc_confidence::default(), ofc_confidence::from);
+        self.rank = rank.to_c();
+        self.norm_location = norm_location.to_c();
+        self.inliers = inliers.to_c();
+        self.ellipsoid = ellipsoid.to_c();
+        self.tilts = tilts.to_c();
+        self.confidence = joint.to_c();
         self.set_choice(choice.as_ref());
     }
 
@@ -330,20 +307,15 @@ impl ofc_solution {
         for (i, is_behind) in choice.lights_from_behind().into_iter().enumerate() {
             self.lights_from_behind |= u32::from(is_behind) << i;
         }
-        self.candidate_count = count(choice.candidates.len());
+        self.slant_source = choice.source.to_c();
+        self.candidate_count = choice.candidates.len().to_c();
         for (slot, candidate) in self.candidates.iter_mut().zip(&choice.candidates) {
-            *slot = (*candidate).into();
+            *slot = candidate.to_c();
         }
-        (self.slant_source, self.chosen) = match choice.source {
-            SlantSource::Root => (OFC_SLANTS_ROOT, count(choice.chosen)),
-            SlantSource::LeastSquares => (OFC_SLANTS_LEAST_SQUARES, -1),
-            SlantSource::TiltIntegrability => (OFC_SLANTS_TILT_INTEGRABILITY, -1),
-            SlantSource::Pentland => (OFC_SLANTS_PENTLAND, -1),
-            SlantSource::LeeRosenfeld => (OFC_SLANTS_LEE_ROSENFELD, -1),
-            SlantSource::ZhengChellappa => (OFC_SLANTS_ZHENG_CHELLAPPA, -1),
-            SlantSource::Joint => (OFC_SLANTS_JOINT, -1),
-        };
-        self.orientation = choice.orientation.into();
+        if choice.source == SlantSource::Root {
+            self.chosen = choice.chosen.to_c();
+        }
+        self.orientation = choice.orientation.to_c();
     }
 }
 
@@ -353,10 +325,11 @@ impl ofc_solution {
 /// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_solve_params_default(params: *mut ofc_solve_params) -> ofc_status {
-    of(Out::new(params).map(|out| {
-        out.write(ofc_solve_params::defaults());
-        OFC_STATUS_OK
-    }))
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        *call.output(params)? = Params::default().to_c();
+        Ok(OFC_STATUS_OK)
+    })
 }
 
 /// Bytes of workspace that ofc_solve() needs: 8 a pixel, and 16 for each of the first sample_size pixels where that is
@@ -369,11 +342,12 @@ pub unsafe extern "C" fn ofc_solve_workspace_size(
     height: i32,
     params: *const ofc_solve_params,
 ) -> usize {
-    let Ok(params) = input(params).and_then(|(params, _)| params.check()) else { return 0 };
-    match pixel_count(width, height) {
-        0 => 0,
-        pixels => float_bytes(solve::workspace_len(pixels, params.lmeds.sample_size)),
-    }
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.size(|call| {
+        let params: Params = call.params(params)?;
+        let pixels = checked_pixel_count(width, height)?;
+        Ok(Need::of_singles(solve::workspace_len(pixels, params.lmeds.sample_size)))
+    })
 }
 
 /// From a picture to the color-orientation matrix F: regression, rejection, tilts, slants, the choice among candidates.
@@ -401,29 +375,20 @@ pub unsafe extern "C" fn ofc_solve(
     inlier_mask: *mut u8,
     solution: *mut ofc_solution,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (own, params_extent) = input(params)?;
-        let params = own.check()?;
-        let view = &picture.view;
-        let pixels = view.width() * view.height();
-        let need = float_bytes(solve::workspace_len(pixels, params.lmeds.sample_size));
-        let scratch = self::workspace(workspace.cast(), workspace_bytes, need)?;
-        let out = Out::new(solution)?;
-        let [a, b, c, d, e] = picture.extents;
-        let read = [a, b, c, d, e, params_extent];
-        let mask_extent =
-            if inlier_mask.is_null() { Extent::NOTHING } else { extent(inlier_mask.cast_const(), pixels)? };
-        disjoint(&[scratch, out.extent, mask_extent], &read)?;
-        // SAFETY: checked and disjoint.
-        let found = solve::solve(view, &params, unsafe { floats(workspace, need) }).map_err(of_fit_error)?;
-        if !inlier_mask.is_null() {
-            // SAFETY: checked and disjoint.
-            found.inliers.mark(view, unsafe { output_slice(inlier_mask, pixels) });
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let params: Params = call.params(params)?;
+        let pixels = picture.width() * picture.height();
+        let need = solve::workspace_len(pixels, params.lmeds.sample_size);
+        let workspace = call.floats(workspace, workspace_bytes, need)?;
+        let solution = call.output(solution)?;
+        let mask = unless_null(inlier_mask, || call.output_slice(inlier_mask, pixels))?;
+        let found = solve::solve(&picture, &params, workspace)?;
+        if let Some(mask) = mask {
+            found.inliers.mark(&picture, mask);
         }
-        out.place().set(&found);
-        Ok(of_outcome(found.outcome))
-    };
-    of(body())
+        solution.set(&found);
+        Ok(found.outcome.to_c())
+    })
 }

@@ -1,10 +1,19 @@
 //! What every call returns.
 
+use crate::twin::constants;
 use core::ffi::{CStr, c_char};
+use ofc_core::check::CheckError;
+use ofc_core::color::ellipsoid::NotPositiveDefinite;
 use ofc_core::color::lmeds::FitError;
+use ofc_core::color::segment::SegmentError;
+use ofc_core::orientation::orthogonal::OrthogonalError;
 use ofc_core::picture::ImageError;
+use ofc_core::picture::flat_field::FlatFieldError;
+use ofc_core::render::{DepthMapError, RenderError};
 use ofc_core::solve::Outcome;
 use ofc_core::stream::StreamError;
+use ofc_core::surface::depth::DepthError;
+use ofc_core::surface::normals;
 
 /// The result of a call: 0 is success; negative is an error that leaves every output as it was; positive is a sound
 /// question without a full answer, and each call says what it writes then. Numbers are never reused.
@@ -118,18 +127,39 @@ pub extern "C" fn ofc_status_message(status: ofc_status) -> *const c_char {
     message(status).as_ptr()
 }
 
-/// The status of a view that could not be made.
-pub(crate) const fn of_image_error(error: ImageError) -> ofc_status {
-    match error {
+/// Why a call is refused.
+#[derive(Clone, Copy)]
+pub(crate) struct Refusal(pub(crate) ofc_status);
+
+impl From<ofc_status> for Refusal {
+    fn from(status: ofc_status) -> Self {
+        Self(status)
+    }
+}
+
+/// Refuses the call with `status` unless a condition holds.
+pub(crate) fn ensure(holds: bool, status: ofc_status) -> Result<(), Refusal> {
+    if holds { Ok(()) } else { Err(Refusal(status)) }
+}
+
+/// What errors of the core are in C.
+macro_rules! refusals {
+    ($($error:ty { $($kind:pat => $status:expr),+ $(,)? })+) => {$(
+        impl From<$error> for Refusal {
+            fn from(error: $error) -> Self {
+                Self(match error { $($kind => $status,)+ })
+            }
+        }
+    )+};
+}
+
+refusals! {
+    ImageError {
         ImageError::Empty => OFC_STATUS_EMPTY,
         ImageError::StrideTooSmall => OFC_STATUS_STRIDE_TOO_SMALL,
         ImageError::TooLarge | ImageError::TooShort => OFC_STATUS_TOO_LARGE,
     }
-}
-
-/// The status of a fit that could not be made.
-pub(crate) const fn of_fit_error(error: FitError) -> ofc_status {
-    match error {
+    FitError {
         FitError::Params => OFC_STATUS_INVALID_PARAMETER,
         FitError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
         FitError::TooFewPixels => OFC_STATUS_TOO_FEW_PIXELS,
@@ -137,11 +167,40 @@ pub(crate) const fn of_fit_error(error: FitError) -> ofc_status {
         FitError::Saturated => OFC_STATUS_SATURATED,
         FitError::RankDeficient { .. } => OFC_STATUS_RANK_DEFICIENT,
     }
-}
-
-/// The status of a stream's refusal.
-pub(crate) const fn of_stream_error(error: StreamError) -> ofc_status {
-    match error {
+    NotPositiveDefinite {
+        NotPositiveDefinite { .. } => OFC_STATUS_NOT_POSITIVE_DEFINITE,
+    }
+    OrthogonalError {
+        OrthogonalError::Params | OrthogonalError::SingularRoot => OFC_STATUS_INVALID_PARAMETER,
+        OrthogonalError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
+        OrthogonalError::NoCells => OFC_STATUS_NO_CELLS,
+    }
+    normals::TooShort {
+        normals::TooShort => OFC_STATUS_INVALID_PARAMETER,
+    }
+    DepthError {
+        DepthError::Size => OFC_STATUS_TOO_LARGE,
+        DepthError::Parameter => OFC_STATUS_INVALID_PARAMETER,
+        DepthError::Workspace(_) => OFC_STATUS_WORKSPACE_TOO_SMALL,
+        DepthError::Output => OFC_STATUS_STRIDE_TOO_SMALL,
+        DepthError::Empty => OFC_STATUS_TOO_FEW_PIXELS,
+    }
+    CheckError {
+        CheckError::Orientation => OFC_STATUS_NOT_SOLVED,
+        CheckError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
+        CheckError::Size => OFC_STATUS_INVALID_PARAMETER,
+        CheckError::NoInliers => OFC_STATUS_TOO_FEW_PIXELS,
+    }
+    DepthMapError {
+        DepthMapError::Image(error) => Self::from(error).0,
+        DepthMapError::Pitch => OFC_STATUS_INVALID_PARAMETER,
+    }
+    RenderError {
+        RenderError::NonFiniteDepth | RenderError::Peak | RenderError::Noise | RenderError::Size => {
+            OFC_STATUS_INVALID_PARAMETER
+        },
+    }
+    StreamError {
         StreamError::Params => OFC_STATUS_INVALID_PARAMETER,
         StreamError::Size => OFC_STATUS_TOO_LARGE,
         StreamError::TooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
@@ -151,24 +210,23 @@ pub(crate) const fn of_stream_error(error: StreamError) -> ofc_status {
         StreamError::TooManyRows => OFC_STATUS_TOO_MANY_ROWS,
         StreamError::TooFewRows => OFC_STATUS_TOO_FEW_ROWS,
         StreamError::Row => OFC_STATUS_ROW_MISMATCH,
-        StreamError::Fit(error) => of_fit_error(error),
+        StreamError::Fit(error) => Self::from(error).0,
+    }
+    FlatFieldError {
+        FlatFieldError::Size => OFC_STATUS_INVALID_PARAMETER,
+        FlatFieldError::Output => OFC_STATUS_STRIDE_TOO_SMALL,
+        FlatFieldError::Background => OFC_STATUS_DARK,
+    }
+    SegmentError {
+        SegmentError::Params => OFC_STATUS_INVALID_PARAMETER,
+        SegmentError::LabelsTooShort | SegmentError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
     }
 }
 
-/// The status of a pipeline that came so far.
-pub(crate) const fn of_outcome(outcome: Outcome) -> ofc_status {
-    match outcome {
-        Outcome::Solved => OFC_STATUS_OK,
-        Outcome::RankDeficient => OFC_STATUS_RANK_DEFICIENT,
-        Outcome::NotPositiveDefinite => OFC_STATUS_NOT_POSITIVE_DEFINITE,
-        Outcome::NoTilt => OFC_STATUS_NO_TILT,
-        Outcome::NoConsistentSlants => OFC_STATUS_NO_CONSISTENT_SLANTS,
-    }
-}
-
-/// The status of a call's body.
-pub(crate) fn of(result: Result<ofc_status, ofc_status>) -> ofc_status {
-    match result {
-        Ok(status) | Err(status) => status,
-    }
-}
+constants!(Outcome = {
+    Solved: OFC_STATUS_OK,
+    RankDeficient: OFC_STATUS_RANK_DEFICIENT,
+    NotPositiveDefinite: OFC_STATUS_NOT_POSITIVE_DEFINITE,
+    NoTilt: OFC_STATUS_NO_TILT,
+    NoConsistentSlants: OFC_STATUS_NO_CONSISTENT_SLANTS,
+});

@@ -1,17 +1,13 @@
 //! Rows of a camera instead of a picture: one memory of a published size, in the caller's hands.
 
-use crate::image::{CheckedImage, dimension, image, ofc_image, ofc_pixel_format, sample_type};
-use crate::pointers::{
-    Extent, OFC_WORKSPACE_ALIGNMENT, Out, Plain, disjoint, extent, input, input_array, output_slice,
-    workspace,
-};
-use crate::regression::pixel_count;
-use crate::solve::{OFC_ORIENTATION_DIRECT, ofc_solution, ofc_solve_params};
+use crate::image::{checked_pixel_count, dimension, ofc_image, ofc_pixel_format, sample_type};
+use crate::pointers::{Call, Contract, Plain, plain, unless_null};
+use crate::solve::{ofc_solution, ofc_solve_params};
 use crate::status::{
-    OFC_STATUS_COLD_START_NEEDED, OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_STREAM,
-    OFC_STATUS_NOT_SOLVED, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO, OFC_STATUS_TOO_LARGE, of, of_outcome,
-    of_stream_error, ofc_status,
+    OFC_STATUS_COLD_START_NEEDED, OFC_STATUS_NO_STREAM, OFC_STATUS_NOT_SOLVED, OFC_STATUS_OK,
+    OFC_STATUS_TOO_LARGE, Refusal, ensure, ofc_status,
 };
+use crate::twin::{ToC, constants, from_c, to_c};
 use core::ffi::c_void;
 use ofc_core::math::arena::Need;
 use ofc_core::picture::Image;
@@ -71,12 +67,18 @@ pub struct ofc_stream_drift {
     pub reserved: u32,
 }
 
-// SAFETY: integers and floats.
-unsafe impl Plain for ofc_stream_params {}
-// SAFETY: as above.
-unsafe impl Plain for ofc_stream_drift {}
-// SAFETY: a raw pointer.
-unsafe impl Plain for *mut ofc_stream {}
+plain!(ofc_stream_params, ofc_stream_drift, *mut ofc_stream);
+
+constants!(Pass = {
+    Colors: OFC_PASS_COLORS,
+    Tilts: OFC_PASS_TILTS,
+    Slants: OFC_PASS_SLANTS,
+    Outward: OFC_PASS_OUTWARD,
+    Integrability: OFC_PASS_INTEGRABILITY,
+    Refine: OFC_PASS_REFINE,
+});
+to_c!(Params => ofc_stream_params { solve, smallest_share, refine_pixels } zero { reserved });
+from_c!(Params <= ofc_stream_params { solve, smallest_share, refine_pixels } zero { reserved } where are_valid);
 
 /// A stream in memory of the caller's: see ofc_stream_init(). It may be copied to another place of the same alignment.
 pub struct ofc_stream {
@@ -92,7 +94,7 @@ struct Head {
 
 /// Bytes of a stream before its buffers, on every target.
 const STATE_BYTES: usize = 4096;
-const _: () = assert!(size_of::<Head>() <= STATE_BYTES && align_of::<Head>() <= OFC_WORKSPACE_ALIGNMENT);
+const _: () = assert!(size_of::<Head>() <= STATE_BYTES);
 
 /// The first word of a stream.
 const MAGIC: u64 = 0x6d61_6572_7473_666f;
@@ -121,53 +123,22 @@ fn sizes(width: usize, height: usize, sample: u64) -> (usize, usize, usize) {
     (numbers, places, bytes.map_or(0, |bytes| bytes / 8 * 8))
 }
 
-impl ofc_stream_params {
-    fn check(self) -> Result<Params, ofc_status> {
-        let Self { solve, smallest_share, refine_pixels, reserved } = self;
-        if reserved != [0; 3] {
-            return Err(OFC_STATUS_RESERVED_NOT_ZERO);
-        }
-        let params = Params { solve: solve.check()?, smallest_share, refine_pixels };
-        if params.are_valid() { Ok(params) } else { Err(OFC_STATUS_INVALID_PARAMETER) }
+impl<'a> Call<'a> {
+    /// The stream at this address.
+    fn stream(&mut self, stream: *mut ofc_stream) -> Result<Stream<'a>, Refusal> {
+        let sizes = |[magic, size, sample, check]: [u64; 4]| {
+            ensure([magic, size, sample, check] == words(size, sample), OFC_STATUS_NO_STREAM)?;
+            let (numbers, places, _) = sizes((size >> 32) as usize, size as u32 as usize, sample);
+            Ok((numbers, places))
+        };
+        let need = |head: &Head| head.state.need();
+        // SAFETY: words that check say that ofc_stream_init() was here, which has seen that there is so much memory.
+        let (head, mut numbers, places) = unsafe { self.object(stream, STATE_BYTES, sizes, need) }?;
+        let Need { doubles, singles, .. } = need(head);
+        let boxes = numbers.doubles(doubles).unwrap_or_default();
+        let values = numbers.singles(singles).unwrap_or_default();
+        Ok(Stream::new(&mut head.state, Memory { boxes, values, places })?)
     }
-}
-
-const fn of_pass(pass: Pass) -> ofc_stream_pass {
-    match pass {
-        Pass::Colors => OFC_PASS_COLORS,
-        Pass::Tilts => OFC_PASS_TILTS,
-        Pass::Slants => OFC_PASS_SLANTS,
-        Pass::Outward => OFC_PASS_OUTWARD,
-        Pass::Integrability => OFC_PASS_INTEGRABILITY,
-        Pass::Refine => OFC_PASS_REFINE,
-    }
-}
-
-/// The stream at this address, and its bytes.
-///
-/// # Safety
-/// What [`ofc_stream_init`] wrote there is still there, and nobody else uses it during the call.
-unsafe fn opened<'a>(pointer: *mut ofc_stream) -> Result<(Stream<'a>, Extent), ofc_status> {
-    let head = pointer.cast::<Head>();
-    extent(head.cast_const(), 1)?;
-    let ([magic, size, sample, check], _) = input_array::<u64, 4>(head.cast())?;
-    if [magic, size, sample, check] != words(size, sample) {
-        return Err(OFC_STATUS_NO_STREAM);
-    }
-    let (width, height) = ((size >> 32) as usize, size as u32 as usize);
-    let (numbers, places, bytes) = sizes(width, height, sample);
-    let whole = extent(pointer.cast::<u8>().cast_const(), bytes)?;
-    // SAFETY: its words say that `init` was here, which has seen that there are so many bytes; state and buffers lie apart.
-    let (state, memory) = unsafe {
-        let state = &mut (*head).state;
-        let Need { doubles, singles, .. } = state.need();
-        let first = head.cast::<f64>().add(STATE_BYTES / size_of::<f64>());
-        let boxes = output_slice(first, doubles);
-        let values = output_slice(first.add(doubles).cast::<f32>(), singles);
-        let places = output_slice(first.cast::<u8>().add(numbers), places);
-        (state, Memory { boxes, values, places })
-    };
-    Ok((Stream::new(state, memory).map_err(of_stream_error)?, whole))
 }
 
 /// Sets every field to its default.
@@ -176,16 +147,11 @@ unsafe fn opened<'a>(pointer: *mut ofc_stream) -> Result<(Stream<'a>, Extent), o
 /// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_params) -> ofc_status {
-    of(Out::new(params).map(|out| {
-        let Params { solve, smallest_share, refine_pixels } = Params::default();
-        let mut defaults = ofc_solve_params::defaults();
-        defaults.lmeds.sample_size = solve.lmeds.sample_size;
-        if !stream::FULL {
-            defaults.orientation_method = OFC_ORIENTATION_DIRECT;
-        }
-        out.write(ofc_stream_params { solve: defaults, smallest_share, refine_pixels, reserved: [0; 3] });
-        OFC_STATUS_OK
-    }))
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        *call.output(params)? = Params::default().to_c();
+        Ok(OFC_STATUS_OK)
+    })
 }
 
 /// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where what rows take is more
@@ -196,11 +162,13 @@ pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_param
 /// @return The size, or 0 when an argument is invalid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const ofc_stream_params) -> usize {
-    let Ok(params) = input(params).and_then(|(params, _)| params.check()) else { return 0 };
-    if pixel_count(width, height) == 0 {
-        return 0;
-    }
-    sizes(dimension(width), dimension(height), sample_word(&params)).2
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.size(|call| {
+        let params: Params = call.params(params)?;
+        checked_pixel_count(width, height)?;
+        let (_, _, bytes) = sizes(dimension(width), dimension(height), sample_word(&params));
+        Ok(Need { doubles: bytes / size_of::<f64>(), singles: 0, integers: 0 })
+    })
 }
 
 /// Makes a stream for frames that come row by row. A frame is begun, given its rows from the top down, and ended; which
@@ -247,33 +215,21 @@ pub unsafe extern "C" fn ofc_stream_init(
     memory_bytes: usize,
     stream: *mut *mut ofc_stream,
 ) -> ofc_status {
-    let body = || {
-        let (params, params_extent) = input(params)?;
-        let params = params.check()?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let params: Params = call.params(params)?;
         let sample = sample_type(format)?;
-        if width < 1 || height < 1 {
-            return Err(OFC_STATUS_EMPTY);
-        }
-        if pixel_count(width, height) == 0 {
-            return Err(OFC_STATUS_TOO_LARGE);
-        }
-        let (width, height) = (dimension(width), dimension(height));
-        let word = sample_word(&params);
+        checked_pixel_count(width, height)?;
+        let (width, height, word) = (dimension(width), dimension(height), sample_word(&params));
         let (_, _, need) = sizes(width, height, word);
-        let memory_extent = workspace(memory.cast(), memory_bytes, need)?;
-        let out = Out::new(stream)?;
-        disjoint(&[memory_extent, out.extent], &[params_extent])?;
-        State::check_size(width, height, &params).map_err(of_stream_error)?;
+        let (head, object) = call.memory(memory, memory_bytes, need)?;
+        let stream = call.output(stream)?;
+        State::check_size(width, height, &params)?;
         let words = words((width as u64) << 32 | height as u64, word);
-        // SAFETY: aligned, long enough, and apart from everything else.
-        unsafe {
-            let head = memory.cast::<Head>();
-            head.write(Head { words, state: State::unchecked(width, height, sample, params) });
-        }
-        out.write(memory.cast());
+        head.write(Head { words, state: State::unchecked(width, height, sample, params) });
+        *stream = object;
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
 /// Forgets the model and any frame under way: the next frame is for colors.
@@ -283,10 +239,10 @@ pub unsafe extern "C" fn ofc_stream_init(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_restart(stream: *mut ofc_stream) -> ofc_status {
     // SAFETY: the contract of this function.
-    of(unsafe { opened(stream) }.map(|(mut stream, _)| {
-        stream.restart();
-        OFC_STATUS_OK
-    }))
+    unsafe { Contract::kept() }.call(|call| {
+        call.stream(stream)?.restart();
+        Ok(OFC_STATUS_OK)
+    })
 }
 
 /// Begins a frame. One that was not ended is forgotten.
@@ -296,27 +252,16 @@ pub unsafe extern "C" fn ofc_stream_restart(stream: *mut ofc_stream) -> ofc_stat
 /// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM; the status of an invalid argument.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_begin(stream: *mut ofc_stream, pass: *mut ofc_stream_pass) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let (mut stream, own) = unsafe { opened(stream) }?;
-        let out = optional(pass, own)?;
-        let pass = stream.begin().map_err(of_stream_error)?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let mut stream = call.stream(stream)?;
+        let out = unless_null(pass, || call.output(pass))?;
+        let pass = stream.begin()?;
         if let Some(out) = out {
-            out.write(of_pass(pass));
+            *out = pass.to_c();
         }
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
-}
-
-/// An output that may be NULL, apart from the stream.
-fn optional<T: Plain>(pointer: *mut T, stream: Extent) -> Result<Option<Out<T>>, ofc_status> {
-    if pointer.is_null() {
-        return Ok(None);
-    }
-    let out = Out::new(pointer)?;
-    disjoint(&[out.extent, stream], &[])?;
-    Ok(Some(out))
+    })
 }
 
 /// Takes the next row of the frame.
@@ -332,16 +277,13 @@ pub unsafe extern "C" fn ofc_stream_row(
     y: i32,
     row: *const ofc_image,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let (mut stream, own) = unsafe { opened(stream) }?;
-        // SAFETY: as above.
-        let CheckedImage { view, extents } = unsafe { image(row) }?;
-        disjoint(&[own], &extents)?;
-        let y = usize::try_from(y).unwrap_or(usize::MAX);
-        stream.row(y, &view).map(|()| OFC_STATUS_OK).map_err(of_stream_error)
-    };
-    of(body())
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let mut stream = call.stream(stream)?;
+        let row = call.image(row)?;
+        stream.row(usize::try_from(y).unwrap_or(usize::MAX), &row)?;
+        Ok(OFC_STATUS_OK)
+    })
 }
 
 /// Ends the frame.
@@ -358,22 +300,21 @@ pub unsafe extern "C" fn ofc_stream_row(
 /// Reference: section 3.4.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_end(stream: *mut ofc_stream, pass: *mut ofc_stream_pass) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let (mut stream, own) = unsafe { opened(stream) }?;
-        let out = optional(pass, own)?;
-        let next = stream.end().map_err(of_stream_error)?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let mut stream = call.stream(stream)?;
+        let out = unless_null(pass, || call.output(pass))?;
+        let next = stream.end()?;
         if let Some(out) = out {
-            out.write(of_pass(next));
+            *out = next.to_c();
         }
         let state = stream.state();
         Ok(match (next, state.drift()) {
             (Pass::Colors, Some(_)) => OFC_STATUS_COLD_START_NEEDED,
-            (Pass::Colors, None) => of_outcome(state.solution().outcome),
+            (Pass::Colors, None) => state.solution().outcome.to_c(),
             _ => OFC_STATUS_OK,
         })
-    };
-    of(body())
+    })
 }
 
 /// What the last cold start found, and the frames that refined it since.
@@ -389,19 +330,15 @@ pub unsafe extern "C" fn ofc_stream_solution(
     stream: *mut ofc_stream,
     solution: *mut ofc_solution,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let (stream, own) = unsafe { opened(stream) }?;
-        let out = Out::new(solution)?;
-        disjoint(&[out.extent, own], &[])?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let stream = call.stream(stream)?;
+        let solution = call.output(solution)?;
         let state = stream.state();
-        if !state.is_concluded() {
-            return Err(OFC_STATUS_NOT_SOLVED);
-        }
-        out.place().set(state.solution());
-        Ok(of_outcome(state.solution().outcome))
-    };
-    of(body())
+        ensure(state.is_concluded(), OFC_STATUS_NOT_SOLVED)?;
+        solution.set(state.solution());
+        Ok(solution.outcome)
+    })
 }
 
 /// What the last frame of OFC_PASS_REFINE says of the model from before it.
@@ -415,25 +352,23 @@ pub unsafe extern "C" fn ofc_stream_drift_get(
     stream: *mut ofc_stream,
     drift: *mut ofc_stream_drift,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let (stream, own) = unsafe { opened(stream) }?;
-        let out = Out::new(drift)?;
-        disjoint(&[out.extent, own], &[])?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let stream = call.stream(stream)?;
+        let out = call.output(drift)?;
         let Drift { inlier_share, change } = *stream.state().drift().ok_or(OFC_STATUS_NOT_SOLVED)?;
         let nothing = Change { angles: [0.0; 3], strengths: [0.0; 3], dispersion: 0.0 };
         let Change { angles, strengths, dispersion } = change.unwrap_or(nothing);
-        out.write(ofc_stream_drift {
+        *out = ofc_stream_drift {
             inlier_share,
             angle_rad: angles,
             strength_ratio: strengths,
             dispersion_ratio: dispersion,
-            refined: i32::from(change.is_some()),
+            refined: change.is_some().to_c(),
             reserved: 0,
-        });
+        };
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
 /// Unit normals of a row's inliers, under the model there is: any row of any frame.
@@ -453,7 +388,7 @@ pub unsafe extern "C" fn ofc_stream_normals_row(
     normals: *mut f32,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    unsafe { write_row(stream, row, normals, 3, State::normals) }
+    unsafe { Contract::kept() }.call(|call| write_row(call, stream, row, normals, 3, State::normals))
 }
 
 /// As ofc_stream_normals_row(), in 8 bits a component.
@@ -470,7 +405,7 @@ pub unsafe extern "C" fn ofc_stream_normals_row_packed(
     normals: *mut u8,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    unsafe { write_row(stream, row, normals, 3, State::packed_normals) }
+    unsafe { Contract::kept() }.call(|call| write_row(call, stream, row, normals, 3, State::packed_normals))
 }
 
 /// Which pixels of a row are inliers, under the model there is.
@@ -486,30 +421,21 @@ pub unsafe extern "C" fn ofc_stream_inliers_row(
     flags: *mut u8,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    unsafe { write_row(stream, row, flags, 1, State::inliers) }
+    unsafe { Contract::kept() }.call(|call| write_row(call, stream, row, flags, 1, State::inliers))
 }
 
-/// The common body of the three: `count` values a pixel.
-///
-/// # Safety
-/// The stream, the row and the output are the caller's promise.
-unsafe fn write_row<T: Plain>(
+/// Writes so many values for each pixel of a row.
+fn write_row<T: Plain>(
+    call: &mut Call,
     stream: *mut ofc_stream,
     row: *const ofc_image,
     out: *mut T,
     count: usize,
     write: impl FnOnce(&State, &Image, &mut [T]) -> Result<(), StreamError>,
-) -> ofc_status {
-    let body = || {
-        // SAFETY: the caller's promise.
-        let (stream, own) = unsafe { opened(stream) }?;
-        // SAFETY: as above.
-        let CheckedImage { view, extents: [a, b, c, d, e] } = unsafe { image(row) }?;
-        let values = view.width().checked_mul(count).ok_or(OFC_STATUS_TOO_LARGE)?;
-        disjoint(&[extent(out.cast_const(), values)?], &[a, b, c, d, e, own])?;
-        // SAFETY: checked and disjoint.
-        let out = unsafe { output_slice(out, values) };
-        write(stream.state(), &view, out).map(|()| OFC_STATUS_OK).map_err(of_stream_error)
-    };
-    of(body())
+) -> Result<ofc_status, Refusal> {
+    let stream = call.stream(stream)?;
+    let row = call.image(row)?;
+    let out = call.output_slice(out, row.width().checked_mul(count).ok_or(OFC_STATUS_TOO_LARGE)?)?;
+    write(stream.state(), &row, out)?;
+    Ok(OFC_STATUS_OK)
 }

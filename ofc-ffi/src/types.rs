@@ -1,26 +1,18 @@
-//! The structs that cross the border, each with the core's twin. Conversions name every field, so a field added on one
-//! side does not compile until the other has it.
+//! The structs that results consist of, and what the regression takes.
 
-use crate::pointers::Plain;
-use crate::status::{OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_RESERVED_NOT_ZERO, ofc_status};
+use crate::pointers::plain;
+use crate::status::{OFC_STATUS_INVALID_PARAMETER, Refusal, ensure};
+use crate::twin::{FromC, ToC, constants, from_c, to_c};
 use ofc_core::color::ellipsoid::Ellipsoid;
 use ofc_core::color::inliers::{Band, Inliers};
-use ofc_core::color::lmeds::{self, Fit};
+use ofc_core::color::lmeds::{Fit, Method, Params};
 use ofc_core::color::location::Location;
 use ofc_core::color::regression::Estimate;
 use ofc_core::light::tilt::Tilts;
-use ofc_core::math::mat3::Mat3;
 use ofc_core::orientation::integrability::Integrability;
 use ofc_core::orientation::matrix::Orientation;
-use ofc_core::picture::{Face, Faces};
-use ofc_core::picture::{PixelCounts, Usable};
+use ofc_core::picture::{Face, Faces, PixelCounts, Usable};
 
-macro_rules! plain {
-    ($($name:ident),+ $(,)?) => {
-        // SAFETY: integers and floats only.
-        $(unsafe impl Plain for $name {})+
-    };
-}
 plain!(
     ofc_lmeds_params,
     ofc_pixel_counts,
@@ -36,37 +28,14 @@ plain!(
     ofc_integrability,
 );
 
-/// A 3x3 matrix of C, row-major.
-pub(crate) fn flat(m: &Mat3) -> [f64; 9] {
-    let [[a, b, c], [d, e, f], [g, h, i]] = *m;
-    [a, b, c, d, e, f, g, h, i]
-}
-
-/// A 3x3 matrix from C, row-major.
-pub(crate) fn unflat([a, b, c, d, e, f, g, h, i]: [f64; 9]) -> Mat3 {
-    [[a, b, c], [d, e, f], [g, h, i]]
-}
-
-/// A 3x3 matrix from C, row-major, of finite numbers.
-pub(crate) fn finite_matrix(values: [f64; 9]) -> Result<Mat3, ofc_status> {
-    if values.iter().all(|value| value.is_finite()) {
-        Ok(unflat(values))
-    } else {
-        Err(OFC_STATUS_INVALID_PARAMETER)
-    }
-}
-
-/// A number of pixels; pictures hold no more than 2^31 - 1.
-pub(crate) fn count(pixels: usize) -> i32 {
-    i32::try_from(pixels).unwrap_or(i32::MAX)
-}
-
 /// How C is fitted: one of OFC_FIT_*.
 pub type ofc_fit_method = i32;
 /// Least median of squares, the paper's.
 pub const OFC_FIT_LEAST_MEDIAN: i32 = 0;
 /// Least squares over every usable pixel, none rejected: Woodham, Iwahori and Barman's, for pictures without outliers.
 pub const OFC_FIT_LEAST_SQUARES: i32 = 1;
+
+constants!(Method = { LeastMedian: OFC_FIT_LEAST_MEDIAN, LeastSquares: OFC_FIT_LEAST_SQUARES });
 
 /// How the regression in color space searches and what it rejects. Set by ofc_lmeds_params_default().
 #[repr(C)]
@@ -97,77 +66,26 @@ pub struct ofc_lmeds_params {
     pub reserved: [u32; 4],
 }
 
-impl ofc_lmeds_params {
-    /// The defaults.
-    pub(crate) fn defaults() -> Self {
-        let lmeds::Params {
-            method,
-            confidence,
-            outlier_share,
-            min_subsets,
-            subsets,
-            sample_size,
-            seed,
-            rejection,
-            limits_confidence,
-        } = lmeds::Params::default();
-        Self {
-            confidence,
-            outlier_share,
-            rejection,
-            limits_confidence,
-            saturation: 0.0,
-            seed,
-            min_subsets,
-            subsets,
-            sample_size,
-            method: match method {
-                lmeds::Method::LeastMedian => OFC_FIT_LEAST_MEDIAN,
-                lmeds::Method::LeastSquares => OFC_FIT_LEAST_SQUARES,
-            },
-            reserved: [0; 4],
-        }
-    }
+to_c!(Params => ofc_lmeds_params {
+    confidence, outlier_share, rejection, limits_confidence, seed, min_subsets, subsets, sample_size, method
+} zero { saturation, reserved });
+from_c!(Params <= ofc_lmeds_params {
+    confidence, outlier_share, rejection, limits_confidence, seed, min_subsets, subsets, sample_size, method
+} without { saturation } zero { reserved });
 
-    /// The core's parameters and the saturation level, if one is set.
-    pub(crate) fn check(self) -> Result<(lmeds::Params, Option<f32>), ofc_status> {
-        let Self {
-            confidence,
-            outlier_share,
-            rejection,
-            limits_confidence,
-            saturation,
-            seed,
-            min_subsets,
-            subsets,
-            sample_size,
-            method,
-            reserved,
-        } = self;
-        if reserved != [0; 4] {
-            return Err(OFC_STATUS_RESERVED_NOT_ZERO);
-        }
-        let method = match method {
-            OFC_FIT_LEAST_MEDIAN => lmeds::Method::LeastMedian,
-            OFC_FIT_LEAST_SQUARES => lmeds::Method::LeastSquares,
-            _ => return Err(OFC_STATUS_INVALID_PARAMETER),
-        };
-        let params = lmeds::Params {
-            method,
-            confidence,
-            outlier_share,
-            min_subsets,
-            subsets,
-            sample_size,
-            seed,
-            rejection,
-            limits_confidence,
-        };
-        if params.subset_count().is_none() || saturation.is_nan() || saturation < 0.0 {
-            return Err(OFC_STATUS_INVALID_PARAMETER);
-        }
-        Ok((params, (saturation > 0.0).then_some(saturation as f32)))
+/// The regression's parameters and the saturation level, if one is set.
+impl FromC<ofc_lmeds_params> for (Params, Option<f32>) {
+    fn from_c(value: ofc_lmeds_params) -> Result<Self, Refusal> {
+        let params = Params::from_c(value)?;
+        ensure(params.subset_count().is_some(), OFC_STATUS_INVALID_PARAMETER)?;
+        Ok((params, saturation(value.saturation)?))
     }
+}
+
+/// A saturation level, 0 where none is set.
+pub(crate) fn saturation(level: f64) -> Result<Option<f32>, Refusal> {
+    ensure(level >= 0.0, OFC_STATUS_INVALID_PARAMETER)?;
+    Ok((level > 0.0).then_some(level as f32))
 }
 
 /// What becomes of the pixels before any fit; the counts add up to width times height.
@@ -192,21 +110,9 @@ pub struct ofc_pixel_counts {
     pub reserved: u32,
 }
 
-impl From<PixelCounts> for ofc_pixel_counts {
-    fn from(pixel_counts: PixelCounts) -> Self {
-        let PixelCounts { usable, masked_out, non_finite, dark, saturated, shaded, largest } = pixel_counts;
-        Self {
-            usable: count(usable),
-            masked_out: count(masked_out),
-            dark: count(dark),
-            saturated: count(saturated),
-            shaded: count(shaded),
-            non_finite: count(non_finite),
-            largest,
-            reserved: 0,
-        }
-    }
-}
+to_c!(PixelCounts => ofc_pixel_counts {
+    usable, masked_out, dark, saturated, non_finite, shaded, largest
+} zero { reserved });
 
 /// A regression coefficient with what the regression knows of it.
 #[repr(C)]
@@ -226,12 +132,7 @@ pub struct ofc_estimate {
     pub high: f64,
 }
 
-impl From<Estimate> for ofc_estimate {
-    fn from(estimate: Estimate) -> Self {
-        let Estimate { value, standard_error, t, p, low, high } = estimate;
-        Self { value, standard_error, t, p, low, high }
-    }
-}
+to_c!(Estimate => ofc_estimate { value, standard_error, t, p, low, high });
 
 impl From<ofc_estimate> for Estimate {
     fn from(estimate: ofc_estimate) -> Self {
@@ -249,6 +150,15 @@ pub struct ofc_shadow_face {
     pub normal: [f32; 3],
     /// In pixel values.
     pub least: f32,
+}
+
+to_c!(Face => ofc_shadow_face { normal, least });
+
+impl From<ofc_shadow_face> for Face {
+    fn from(face: ofc_shadow_face) -> Self {
+        let ofc_shadow_face { normal, least } = face;
+        Self { normal, least }
+    }
 }
 
 /// The pixels that obey the model, as a test of a pixel's color rho alone: finite, not black, below the saturation
@@ -274,42 +184,31 @@ pub struct ofc_inliers {
     pub shadow_faces: [ofc_shadow_face; 3],
 }
 
-impl From<Inliers> for ofc_inliers {
-    fn from(inliers: Inliers) -> Self {
-        let Inliers { usable: Usable { saturation, shadow_faces }, residual, norm } = inliers;
-        Self {
-            saturation: f64::from(saturation),
+impl ToC<ofc_inliers> for Inliers {
+    fn to_c(&self) -> ofc_inliers {
+        let Self { usable: Usable { saturation, shadow_faces: Faces { faces } }, residual, norm } = self;
+        ofc_inliers {
+            saturation: f64::from(*saturation),
             residual_form: residual.form,
             residual_low: residual.low,
             residual_high: residual.high,
             norm_form: norm.form,
             norm_low: norm.low,
             norm_high: norm.high,
-            shadow_faces: shadow_faces.faces.map(|Face { normal, least }| ofc_shadow_face { normal, least }),
+            shadow_faces: faces.to_c(),
         }
     }
 }
 
-impl ofc_inliers {
-    /// The core's twin. Any numbers are a valid test: comparisons with NaN hold for no pixel.
-    pub(crate) fn into_core(self) -> Inliers {
-        let Self {
-            saturation,
-            residual_form,
-            residual_low,
-            residual_high,
-            norm_form,
-            norm_low,
-            norm_high,
-            shadow_faces,
-        } = self;
-        let shadow_faces =
-            Faces { faces: shadow_faces.map(|ofc_shadow_face { normal, least }| Face { normal, least }) };
-        Inliers {
-            usable: Usable { saturation: saturation as f32, shadow_faces },
-            residual: Band { form: residual_form, low: residual_low, high: residual_high },
-            norm: Band { form: norm_form, low: norm_low, high: norm_high },
-        }
+/// Any numbers are a valid test: comparisons with NaN hold for no pixel.
+impl FromC<ofc_inliers> for Inliers {
+    fn from_c(value: ofc_inliers) -> Result<Self, Refusal> {
+        let faces = Faces { faces: value.shadow_faces.map(Face::from) };
+        Ok(Self {
+            usable: Usable { saturation: value.saturation as f32, shadow_faces: faces },
+            residual: Band { form: value.residual_form, low: value.residual_low, high: value.residual_high },
+            norm: Band { form: value.norm_form, low: value.norm_low, high: value.norm_high },
+        })
     }
 }
 
@@ -349,43 +248,10 @@ pub struct ofc_color_fit {
     pub subsets: u32,
 }
 
-impl From<&Fit> for ofc_color_fit {
-    #[inline(never)]
-    fn from(fit: &Fit) -> Self {
-        let Fit {
-            robust,
-            median_residual,
-            dispersion,
-            r_squared,
-            band: _,
-            coefficients,
-            covariance,
-            residual_deviation,
-            color_deviations,
-            noise_deviation,
-            pixel_noise,
-            degenerate_noise_deviation,
-            usable: _,
-            inliers,
-            subsets,
-        } = *fit;
-        Self {
-            robust,
-            median_residual,
-            dispersion,
-            r_squared,
-            coefficients: coefficients.map(ofc_estimate::from),
-            covariance,
-            residual_deviation,
-            color_deviations,
-            noise_deviation,
-            pixel_noise,
-            degenerate_noise_deviation,
-            inlier_count: count(inliers),
-            subsets,
-        }
-    }
-}
+to_c!(Fit => ofc_color_fit {
+    robust, median_residual, dispersion, r_squared, coefficients, covariance, residual_deviation, color_deviations,
+    noise_deviation, pixel_noise, degenerate_noise_deviation, subsets; inlier_count: inliers
+} without { band, usable });
 
 /// Where most of a set of numbers lies: the one-dimensional least median of squares.
 #[repr(C)]
@@ -399,12 +265,7 @@ pub struct ofc_location {
     pub dispersion: f64,
 }
 
-impl From<Location> for ofc_location {
-    fn from(value: Location) -> Self {
-        let Location { location, median_distance, dispersion } = value;
-        Self { location, median_distance, dispersion }
-    }
-}
+to_c!(Location => ofc_location { location, median_distance, dispersion });
 
 /// What C says of the color-orientation matrix F before its orthogonal transformation is known (eq. 18). Matrices are
 /// row-major.
@@ -425,19 +286,7 @@ pub struct ofc_ellipsoid {
     pub cosines: [f64; 3],
 }
 
-impl From<Ellipsoid> for ofc_ellipsoid {
-    fn from(ellipsoid: Ellipsoid) -> Self {
-        let Ellipsoid { c, eigenvalues, root, f_f_transposed, norms, cosines } = ellipsoid;
-        Self {
-            c: flat(&c),
-            eigenvalues,
-            root: flat(&root),
-            f_f_transposed: flat(&f_f_transposed),
-            norms,
-            cosines,
-        }
-    }
-}
+to_c!(Ellipsoid => ofc_ellipsoid { c, eigenvalues, root, f_f_transposed, norms, cosines });
 
 /// Tilts of the three channels' equivalent lights.
 #[repr(C)]
@@ -450,12 +299,7 @@ pub struct ofc_tilts {
     pub mean_gradient: [f64; 6],
 }
 
-impl From<Tilts> for ofc_tilts {
-    fn from(value: Tilts) -> Self {
-        let Tilts { tilts, gradients: [[rx, ry], [gx, gy], [bx, by]] } = value;
-        Self { tilt_rad: tilts, mean_gradient: [rx, ry, gx, gy, bx, by] }
-    }
-}
+to_c!(Tilts => ofc_tilts { ; tilt_rad: tilts, mean_gradient: gradients });
 
 /// Slants of the three channels' equivalent lights that are consistent with their tilts and angles.
 #[repr(C)]
@@ -491,18 +335,8 @@ pub struct ofc_orientation {
     pub reserved: u32,
 }
 
-impl From<Orientation> for ofc_orientation {
-    fn from(orientation: Orientation) -> Self {
-        let Orientation { f, f_inverse, singular_values, rank } = orientation;
-        Self {
-            f: flat(&f),
-            f_inverse: flat(&f_inverse),
-            singular_values,
-            rank: rank.cast_signed(),
-            reserved: 0,
-        }
-    }
-}
+to_c!(Orientation => ofc_orientation { f, f_inverse, singular_values, rank } zero { reserved });
+from_c!(Orientation <= ofc_orientation { f, f_inverse, singular_values, rank } without { reserved });
 
 /// The integral (15) of normals, as a mean over cells of four inliers.
 #[repr(C)]
@@ -516,9 +350,4 @@ pub struct ofc_integrability {
     pub reserved: u32,
 }
 
-impl From<Integrability> for ofc_integrability {
-    fn from(value: Integrability) -> Self {
-        let Integrability { mean, cells } = value;
-        Self { mean, cells: count(cells), reserved: 0 }
-    }
-}
+to_c!(Integrability => ofc_integrability { mean, cells } zero { reserved });

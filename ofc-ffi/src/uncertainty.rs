@@ -1,15 +1,16 @@
 //! How sure C, F and the normals are.
 
-use crate::image::{image, ofc_image};
-use crate::pointers::{Out, Plain, disjoint, extent, input, output_slice};
+use crate::image::{ofc_image, size};
+use crate::orientation::solved;
+use crate::pointers::{Contract, plain};
 use crate::solve::{OFC_EVIDENCE_TILTS_ALONE, ofc_solution};
 use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_NO_COVARIANCE, OFC_STATUS_NOT_SOLVED,
-    OFC_STATUS_OK, of, of_image_error, ofc_status,
+    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_COVARIANCE, OFC_STATUS_OK, Refusal, ensure, ofc_status,
 };
-use crate::types::{finite_matrix, flat};
+use crate::twin::{FromC, ToC};
+use ofc_core::color::inliers::Inliers;
 use ofc_core::color::regression::whole;
-use ofc_core::picture::span;
+use ofc_core::math::mat3::Mat3;
 use ofc_core::surface::uncertainty::{Sources, Uncertainty, of_f, of_f_inverse, of_turn};
 
 /// What squares and products of errors are expected to be; symmetric matrices, row-major. Errors are those of one picture
@@ -29,26 +30,20 @@ pub struct ofc_covariance {
     pub pixel_noise: f64,
 }
 
-// SAFETY: floats.
-unsafe impl Plain for ofc_covariance {}
+plain!(ofc_covariance);
 
 /// What the uncertainty of a solution comes from, if it is there and finite.
-fn sources(solution: &ofc_solution) -> Result<Sources, ofc_status> {
-    if solution.outcome != OFC_STATUS_OK || solution.orientation.rank != 3 {
-        return Err(OFC_STATUS_NOT_SOLVED);
-    }
-    if solution.confidence.evidence == OFC_EVIDENCE_TILTS_ALONE {
-        return Err(OFC_STATUS_NO_COVARIANCE);
-    }
+fn sources(solution: &ofc_solution) -> Result<Sources, Refusal> {
+    let orientation = solved(solution)?;
+    ensure(solution.confidence.evidence != OFC_EVIDENCE_TILTS_ALONE, OFC_STATUS_NO_COVARIANCE)?;
     let (c, noise) = (solution.fit.covariance, solution.fit.pixel_noise);
-    if !(c.iter().all(|entry| entry.is_finite()) && noise >= 0.0 && noise.is_finite()) {
-        return Err(OFC_STATUS_INVALID_PARAMETER);
-    }
+    let finite = c.iter().all(|entry| entry.is_finite()) && noise.is_finite();
+    ensure(finite && noise >= 0.0, OFC_STATUS_INVALID_PARAMETER)?;
     Ok(Sources {
-        f: finite_matrix(solution.orientation.f)?,
-        f_inverse: finite_matrix(solution.orientation.f_inverse)?,
+        f: orientation.f,
+        f_inverse: orientation.f_inverse,
         c,
-        rotation: finite_matrix(solution.confidence.covariance)?,
+        rotation: Mat3::from_c(solution.confidence.covariance)?,
         noise,
     })
 }
@@ -64,22 +59,21 @@ pub unsafe extern "C" fn ofc_solution_covariance(
     solution: *const ofc_solution,
     covariance: *mut ofc_covariance,
 ) -> ofc_status {
-    let body = || {
-        let (solution, solution_extent) = input(solution)?;
-        let out = Out::new(covariance)?;
-        disjoint(&[out.extent], &[solution_extent])?;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let solution = call.input(solution)?;
+        let covariance = call.output(covariance)?;
         let Sources { f, f_inverse, c, rotation, noise } = sources(&solution)?;
         let turn = of_turn(&f, &c, &rotation);
-        out.write(ofc_covariance {
+        *covariance = ofc_covariance {
             c: row_major(&whole(&c)),
             f: row_major(&of_f(&f, &turn)),
             f_inverse: row_major(&of_f_inverse(&f_inverse, &turn)),
-            rotation: flat(&rotation),
+            rotation: rotation.to_c(),
             pixel_noise: noise,
-        });
+        };
         Ok(OFC_STATUS_OK)
-    };
-    of(body())
+    })
 }
 
 /// The entries row by row.
@@ -111,28 +105,14 @@ pub unsafe extern "C" fn ofc_normals_uncertainty(
     angle_rad: *mut f32,
     angle_stride_bytes: usize,
 ) -> ofc_status {
-    let body = || {
-        // SAFETY: the contract of this function.
-        let picture = unsafe { self::image(image) }?;
-        let (solution, solution_extent) = input(solution)?;
-        let [a, b, c, d, e] = picture.extents;
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }.call(|call| {
+        let picture = call.image(image)?;
+        let solution = call.input(solution)?;
         let sources = sources(&solution)?;
-        let view = &picture.view;
-        let bytes = span(view.width(), view.height(), size_of::<f32>(), angle_stride_bytes)
-            .map_err(of_image_error)?;
-        if !angle_stride_bytes.is_multiple_of(size_of::<f32>()) {
-            return Err(OFC_STATUS_MISALIGNED);
-        }
-        let floats = bytes / size_of::<f32>();
-        disjoint(&[extent(angle_rad.cast_const(), floats)?], &[a, b, c, d, e, solution_extent])?;
-        // SAFETY: checked and disjoint.
-        let out = unsafe { output_slice(angle_rad, floats) };
-        let stride = angle_stride_bytes / size_of::<f32>();
-        let inliers = solution.inliers.into_core();
-        match Uncertainty::new(&sources).compute(view, inliers.selector(), out, stride) {
-            Ok(()) => Ok(OFC_STATUS_OK),
-            Err(_) => Err(OFC_STATUS_INVALID_PARAMETER),
-        }
-    };
-    of(body())
+        let inliers = Inliers::from_c(solution.inliers)?;
+        let (angles, stride) = call.output_rows(angle_rad, size(&picture), 1, angle_stride_bytes)?;
+        Uncertainty::new(&sources).compute(&picture, inliers.selector(), angles, stride)?;
+        Ok(OFC_STATUS_OK)
+    })
 }

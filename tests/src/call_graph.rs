@@ -109,12 +109,15 @@ impl CallGraph {
             } else if let Some(target) = hexadecimal(operands) {
                 self.edge(function, Some(target), is_call);
             }
+            // Behind a call only what it must preserve holds what it held; behind a jump the next line comes from elsewhere.
+            function.holding.retain(|register| is_call && PRESERVED.contains(register));
             return;
         }
         // `movslq (table,index,4), register; add table, register; jmp *register` is a `match`.
         if operation == "movslq" && operands.contains(",4)") {
             function.table_registers.insert(destination(operands).to_owned());
         }
+        function.copy(operation, operands);
         let Some(address) = comment(operands) else { return };
         let target = match operation {
             "mov" => slots.get(&address).copied(),
@@ -132,6 +135,7 @@ impl CallGraph {
             _ => return,
         }
         function.pointer_registers.insert(destination(operands).to_owned());
+        function.holding.extend(whole(destination(operands)));
     }
 
     /// A jump within a function is a loop; a call of the function by itself is recursion.
@@ -155,10 +159,56 @@ impl CallGraph {
 #[derive(Default)]
 struct Function {
     address: u64,
-    /// Registers that have held the address of a function.
+    /// Registers that have held the address of a function, read from its slot or copied from a register that held it.
     pointer_registers: BTreeSet<String>,
     /// Registers that have held the offset of a branch of a `match`.
     table_registers: BTreeSet<String>,
+    /// Registers that hold the address of a function at this line, which the one above it leads to.
+    holding: BTreeSet<&'static str>,
+}
+
+impl Function {
+    /// A register takes a value: what another one holds, or something else.
+    fn copy(&mut self, operation: &str, operands: &str) {
+        let operands = operands.split('#').next().unwrap_or_default().trim();
+        let (source, target) = operands.rsplit_once(',').unwrap_or(("", operands));
+        let Some(target) = target.strip_prefix('%').and_then(whole) else { return };
+        let source = source.strip_prefix('%').and_then(whole);
+        if operation == "mov" && source.is_some_and(|source| self.holding.contains(source)) {
+            self.holding.insert(target);
+            self.pointer_registers.insert(target.to_owned());
+        } else {
+            self.holding.remove(target);
+        }
+        if ["mul", "imul", "div", "idiv", "cltq", "cqto", "xchg", "cpuid"].contains(&operation) {
+            self.holding.clear();
+        }
+    }
+}
+
+/// The registers that a called function leaves as they were.
+const PRESERVED: [&str; 6] = ["rbx", "rbp", "r12", "r13", "r14", "r15"];
+
+/// The register of 64 bits that this one is, or is a part of.
+fn whole(register: &str) -> Option<&'static str> {
+    const NAMES: [(&str, &[&str]); 15] = [
+        ("rax", &["eax", "ax", "al", "ah"]),
+        ("rbx", &["ebx", "bx", "bl", "bh"]),
+        ("rcx", &["ecx", "cx", "cl", "ch"]),
+        ("rdx", &["edx", "dx", "dl", "dh"]),
+        ("rsi", &["esi", "si", "sil"]),
+        ("rdi", &["edi", "di", "dil"]),
+        ("rbp", &["ebp", "bp", "bpl"]),
+        ("r8", &["r8d", "r8w", "r8b"]),
+        ("r9", &["r9d", "r9w", "r9b"]),
+        ("r10", &["r10d", "r10w", "r10b"]),
+        ("r11", &["r11d", "r11w", "r11b"]),
+        ("r12", &["r12d", "r12w", "r12b"]),
+        ("r13", &["r13d", "r13w", "r13b"]),
+        ("r14", &["r14d", "r14w", "r14b"]),
+        ("r15", &["r15d", "r15w", "r15b"]),
+    ];
+    NAMES.iter().find(|(name, parts)| *name == register || parts.contains(&register)).map(|(name, _)| *name)
 }
 
 /// Where an address of a function would be handed to another function.

@@ -55,3 +55,24 @@ fn a_library_that_recurses_is_found_out() {
     let unresolved = |call: &String| call.starts_with("ofc_control: call");
     assert!(graph.unresolved.iter().any(unresolved), "{:?}", graph.unresolved);
 }
+
+#[test]
+fn a_copied_address_is_known_only_while_its_register_holds_it() {
+    let unresolved = |between: &str| {
+        let code = format!(
+            "0000000000001000 <f>:\n 1000:\tmov    0x100(%rip),%r15        # 2000 <memcpy>\n{between} 1030:\tmov    \
+             %r15,%rbp\n 1040:\tcall   *%rbp\n"
+        );
+        CallGraph::read(&code, "2000 R_X86_64_GLOB_DAT  memcpy@GLIBC_2.14\n").unresolved
+    };
+    assert_eq!(unresolved(" 1010:\tmov    %r15d,%eax\n 1020:\tcall   1000 <f>\n"), [""; 0]);
+    for written in [
+        "mov    0x8(%rsp),%r15",
+        "xor    %r15d,%r15d",
+        "mov    0x8(%rip),%r15  # 3000 <x>",
+        "pop    %r15",
+        "jmp    1000 <f>",
+    ] {
+        assert_eq!(unresolved(&format!(" 1010:\t{written}\n")), ["f: call   *%rbp"], "{written}");
+    }
+}
