@@ -6,5 +6,7 @@
 
 pub mod channel_maxima;
 pub mod constrained_slant;
+mod differences;
+mod gradient;
 pub mod slant;
 pub mod tilt;

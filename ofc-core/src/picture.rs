@@ -5,7 +5,6 @@
 //! neighbors, the stencil of every finite difference.
 
 pub mod cells;
-pub mod differences;
 mod faces;
 pub mod flat_field;
 mod image;

@@ -22,6 +22,7 @@ mod curve;
 mod descent;
 mod least_squares;
 mod roots;
+mod subdivision;
 mod work_list;
 
 pub use curve::{CurvePoint, curve};
@@ -117,13 +118,6 @@ fn sum([a1, a2, a3]: [f64; 3], [b1, b2, b3]: [f64; 3]) -> [f64; 3] {
     [a1 + b1, a2 + b2, a3 + b3]
 }
 
-/// The inverse by cofactors; infinite or not a number where there is none.
-pub(crate) fn inverse(&[a, b, c]: &Mat3) -> Mat3 {
-    let (bc, ca, ab) = (mat3::cross(b, c), mat3::cross(c, a), mat3::cross(a, b));
-    let determinant = mat3::dot(a, bc);
-    mat3::transpose(&[bc, ca, ab]).map(|row| row.map(|cofactor| cofactor / determinant))
-}
-
 /// The nearest slants in the range that slants can have.
 fn clamp(slants: [f64; 3]) -> [f64; 3] {
     slants.map(|slant| slant.clamp(0.0, FRAC_PI_2))
@@ -170,15 +164,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn an_inverse_is_one() {
-        let a = [[2.0, 1.0, 0.0], [0.5, 0.0, 3.0], [0.0, -1.0, 1.0]];
-        let product = mat3::multiply(&a, &inverse(&a));
-        for (row, wanted) in product.iter().zip(mat3::IDENTITY) {
-            assert!(row.iter().zip(wanted).all(|(x, y)| (x - y).abs() < 1e-15));
-        }
-        assert!(inverse(&[[1.0; 3]; 3]).iter().flatten().all(|entry| !entry.is_finite()));
     }
 }

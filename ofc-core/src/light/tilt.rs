@@ -1,12 +1,15 @@
 //! Tilts of the channels' equivalent lights, one estimator a file.
 
+mod estimator;
+
 pub mod chojnacki;
 pub mod lee_rosenfeld;
 pub mod pentland;
 pub mod zheng_chellappa;
 
-use crate::color::inliers::Inliers;
-use crate::picture::Image;
+pub use estimator::TiltEstimator;
+
+use libm::atan2;
 
 /// Tilts, and what they come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,45 +25,21 @@ impl Tilts {
     pub(crate) const fn alone(tilts: [f64; 3]) -> Self {
         Self { tilts, gradients: [[0.0; 2]; 3] }
     }
-}
 
-/// Where tilts come from.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum TiltEstimator {
-    /// [`pentland`], along the axes and the diagonals.
-    #[default]
-    Pentland,
-    /// [`lee_rosenfeld`].
-    LeeRosenfeld,
-    /// [`zheng_chellappa`].
-    ZhengChellappa,
-    /// [`chojnacki`], over the largest disc inside the inliers.
-    Chojnacki,
-    /// The caller knows them, radians.
-    Given([f64; 3]),
-}
-
-impl TiltEstimator {
-    /// The tilts of the inliers; `None` where the estimator has none.
-    ///
-    /// # Scratch
-    /// For Chojnacki's [`chojnacki::workspace_len`] `f32`, for the others none.
-    pub fn estimate(&self, image: &Image, inliers: &Inliers, workspace: &mut [f32]) -> Option<Tilts> {
-        let bits = inliers.selector();
-        match *self {
-            Self::Pentland => pentland::tilts(image, bits),
-            Self::LeeRosenfeld => lee_rosenfeld::tilts(image, bits).map(Tilts::alone),
-            Self::ZhengChellappa => zheng_chellappa::tilts(image, bits).map(Tilts::alone),
-            Self::Chojnacki => {
-                let disc = chojnacki::largest_disc(image, bits, workspace)?;
-                chojnacki::tilts(image, bits, &disc).map(Tilts::alone)
-            }
-            Self::Given(tilts) => Some(Tilts::alone(tilts)),
+    /// The tilts of the channels' mean gradients, eq. 21; `None` where one is unknown or zero.
+    fn of_gradients(gradient: impl Fn(usize) -> Option<[f64; 2]>) -> Option<Self> {
+        let mut found = Self::alone([0.0; 3]);
+        let channels = found.tilts.iter_mut().zip(&mut found.gradients);
+        for (channel, (tilt, slot)) in channels.enumerate() {
+            *slot = gradient(channel)?;
+            *tilt = angle(*slot)?;
         }
+        Some(found)
     }
 }
 
-/// Whether a mean gradient points anywhere.
-fn has_direction(x: f64, y: f64) -> bool {
-    x.is_finite() && y.is_finite() && (x != 0.0 || y != 0.0)
+/// The angle of a vector in (-pi, pi], counter-clockwise from x; `None` where it points nowhere.
+fn angle([x, y]: [f64; 2]) -> Option<f64> {
+    let has_direction = x.is_finite() && y.is_finite() && (x != 0.0 || y != 0.0);
+    has_direction.then(|| atan2(y, x))
 }

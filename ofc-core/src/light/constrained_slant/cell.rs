@@ -3,7 +3,7 @@
 //! The bound on second derivatives is loose for tilts nearly equal or opposite (k near 1 or -1): then an equation hardly
 //! depends on the sum, or the difference, of its slants. Boxes whose sides are such sums and differences make it sharp.
 
-use super::{Constraints, difference, inverse, max_abs, sum};
+use super::{Constraints, difference, max_abs, sum};
 use crate::math::mat3::{self, Mat3};
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -122,11 +122,13 @@ impl<'a> Frame<'a> {
                 return None;
             }
         }
+        // Singular derivatives do not say where in the box a solution can be.
+        let Some(inverse) = mat3::inverse(&jacobian) else { return Some(cell) };
         let mut narrowed = cell;
-        for ((side, row), middle) in narrowed.iter_mut().zip(inverse(&jacobian)).zip(middle) {
+        for ((side, row), middle) in narrowed.iter_mut().zip(inverse).zip(middle) {
             let newton = middle - mat3::dot(row, f);
             let spread = mat3::dot(row.map(f64::abs), rest);
-            // With singular derivatives these are not numbers, and max and min leave the side as it is.
+            // With nearly singular ones these may not be numbers, and max and min leave the side as it is.
             side.low = side.low.max(newton - spread);
             side.high = side.high.min(newton + spread);
             if side.low > side.high {

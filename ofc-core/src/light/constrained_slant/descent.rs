@@ -1,6 +1,6 @@
 //! Damped Newton descent to a minimum of the sum of the squared residuals of eqs. 24, with the slants kept in range.
 
-use super::{Constraints, clamp, inverse};
+use super::{Constraints, clamp};
 use crate::math::angle::sincos;
 use crate::math::mat3::{self, Mat3};
 use core::f64::consts::FRAC_PI_2;
@@ -53,7 +53,8 @@ fn curvature(constraints: &Constraints, slants: [f64; 3], f: [f64; 3], jacobian:
     curvature
 }
 
-/// The damped Newton step. A slant at its limit that the descent would push beyond stays there and leaves the equations.
+/// Where the damped Newton step leads; with a singular matrix it leads nowhere. A slant at its limit that the descent would
+/// push beyond stays there and leaves the equations.
 fn step(slants: [f64; 3], gradient: [f64; 3], curvature: Mat3, damping: f64) -> [f64; 3] {
     let (mut gradient, mut curvature) = (gradient, curvature);
     let mut is_free = [true; 3];
@@ -72,7 +73,8 @@ fn step(slants: [f64; 3], gradient: [f64; 3], curvature: Mat3, damping: f64) -> 
             }
         }
     }
-    let [d1, d2, d3] = mat3::apply(&inverse(&curvature), gradient);
+    let Some(inverse) = mat3::inverse(&curvature) else { return slants };
+    let [d1, d2, d3] = mat3::apply(&inverse, gradient);
     let [s1, s2, s3] = slants;
     clamp([s1 - d1, s2 - d2, s3 - d3])
 }

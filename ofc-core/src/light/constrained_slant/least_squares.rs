@@ -63,7 +63,6 @@ pub fn least_squares(tilts: [f64; 3], cosines: [f64; 3]) -> NearestSlants {
 
 /// [`least_squares()`] of equations that have no root, with less than 3 kB of stack.
 #[must_use]
-#[inline(never)]
 pub fn without_roots(tilts: [f64; 3], cosines: [f64; 3]) -> NearestSlants {
     let mut best = NearestSlants::NONE;
     let Some(constraints) = Constraints::new(tilts, cosines) else { return best };

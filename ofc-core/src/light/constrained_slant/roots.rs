@@ -14,9 +14,10 @@
 //! # Reference
 //! R. E. Moore, R. B. Kearfott, M. J. Cloud, "Introduction to Interval Analysis", SIAM 2009, chapter 8.
 
-use super::cell::{Frame, Interval, OVERHANG, ZERO, half_width, halves};
+use super::cell::{OVERHANG, ZERO};
 use super::curve::branch_of;
 use super::descent::descend;
+use super::subdivision::{MAX_BOXES, Subdivision};
 use super::work_list::{WORKSPACE_LEN, WorkList};
 use super::{Candidates, Constraints, SlantRoot, clamp, difference, max_abs};
 use crate::math::mat3;
@@ -35,8 +36,6 @@ struct Resolution {
 const FINE: Resolution = Resolution { leaf: 5e-7, same: 1e-7, max_leaves: 1000 };
 /// For solutions that are not isolated, where small boxes are too many: a few members of the family will do.
 const COARSE: Resolution = Resolution { leaf: 0.02, same: 0.2, max_leaves: MAX_BOXES };
-/// Boxes looked at. Random lights need 120 on average; it is thousands when lights are nearly in one plane.
-const MAX_BOXES: usize = 30_000;
 /// Newton steps from a leaf.
 const MAX_STEPS: usize = 12;
 /// Singular values below this share of the largest are not inverted.
@@ -91,48 +90,28 @@ pub fn roots_within(
     true
 }
 
-/// Collects the solutions; false when the boxes were too many.
-#[inline(never)]
+/// Collects the solutions; false when the boxes or the leaves were too many.
 fn search(
     constraints: &Constraints,
     resolution: &Resolution,
     work_list: &mut WorkList,
     found: &mut Candidates,
 ) -> bool {
-    let frame = Frame::new(constraints);
-    work_list.clear();
-    let mut next = Some(frame.everything());
+    let mut boxes = Subdivision::new(constraints, resolution.leaf, work_list);
     let mut leaves = 0;
-    for _ in 0..MAX_BOXES {
-        let Some(cell) = next else { return true };
-        next = match frame.narrow(cell) {
-            None => work_list.pop(),
-            Some(narrowed) if half_width(narrowed) <= resolution.leaf => {
-                leaves += 1;
-                if leaves > resolution.max_leaves {
-                    return false;
-                }
-                let middle = mat3::apply(&frame.axes, narrowed.map(Interval::middle));
-                if let Some(root) = polish(constraints, middle) {
-                    insert(constraints, root, resolution.same, found);
-                }
-                work_list.pop()
-            }
-            Some(narrowed) if half_width(narrowed) <= 0.5 * half_width(cell) => Some(narrowed),
-            Some(narrowed) => {
-                let (low, high) = halves(narrowed);
-                if !work_list.push(high) {
-                    return false;
-                }
-                Some(low)
-            }
-        };
+    while let Some(middle) = boxes.next_leaf() {
+        leaves += 1;
+        if leaves > resolution.max_leaves {
+            return false;
+        }
+        if let Some(root) = polish(constraints, middle) {
+            insert(constraints, root, resolution.same, found);
+        }
     }
-    false
+    boxes.is_complete()
 }
 
 /// The solution that Newton's method reaches, if it is one.
-#[inline(never)]
 fn polish(constraints: &Constraints, start: [f64; 3]) -> Option<SlantRoot> {
     let (best, best_residual) = newton(constraints, start);
     let inside = clamp(best);

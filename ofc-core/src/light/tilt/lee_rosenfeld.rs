@@ -5,11 +5,10 @@
 //! "Improved methods of estimating shape from shading using the light source coordinate system", Artificial
 //! Intelligence 26, 1985.
 
-use super::has_direction;
+use super::Tilts;
+use crate::light::differences::{Differences, color};
 use crate::picture::cells::for_each_block;
-use crate::picture::differences::Differences;
 use crate::picture::{Image, Window};
-use libm::atan2;
 
 /// The tilts of the three channels' lights in (-pi, pi], counter-clockwise from x, for a convex surface.
 ///
@@ -19,19 +18,12 @@ use libm::atan2;
 /// # Accuracy
 /// Exact in the mean on a sphere. Means of differences telescope: what decides is the border of the inliers.
 pub fn tilts(image: &Image, inliers: impl Fn(&Window) -> u64) -> Option<[f64; 3]> {
-    let (mut east, mut north) = (Differences::default(), Differences::default());
+    let (mut east, mut north) = (Differences::<1>::NONE, Differences::<1>::NONE);
     for_each_block(image, inliers, |block| {
         let (top, bottom) = (&block.top, &block.bottom);
-        east.add(block.horizontal(), (top, 1), (top, 0));
-        north.add(block.vertical(), (top, 0), (bottom, 0));
+        east.add(block.horizontal(), (top, 1), (top, 0), &color);
+        north.add(block.vertical(), (top, 0), (bottom, 0), &color);
     });
-    let mut tilts = [0.0; 3];
-    let derivatives = east.statistics(1.0)?.into_iter().zip(north.statistics(1.0)?);
-    for (tilt, ((ix, _), (iy, _))) in tilts.iter_mut().zip(derivatives) {
-        if !has_direction(ix, iy) {
-            return None;
-        }
-        *tilt = atan2(iy, ix);
-    }
-    Some(tilts)
+    let found = Tilts::of_gradients(|channel| Some([east.mean(channel, 1.0)?, north.mean(channel, 1.0)?]))?;
+    Some(found.tilts)
 }

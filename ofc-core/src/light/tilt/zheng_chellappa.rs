@@ -11,10 +11,10 @@
 //! local estimate. The paper's neighbourhoods are larger; their size, and its second estimate from occluding contours,
 //! are not followed here.
 
-use super::has_direction;
+use super::angle;
 use crate::picture::cells::for_each_block;
 use crate::picture::{Image, Window, for_each_bit};
-use libm::{atan2, sqrt};
+use libm::sqrt;
 
 /// The tilts of the three channels' lights in (-pi, pi], counter-clockwise from x, for a convex surface.
 ///
@@ -42,12 +42,6 @@ pub fn tilts(image: &Image, inliers: impl Fn(&Window) -> u64) -> Option<[f64; 3]
             }
         });
     });
-    let mut tilts = [0.0; 3];
-    for (tilt, [x, y]) in tilts.iter_mut().zip(votes) {
-        if !has_direction(x, y) {
-            return None;
-        }
-        *tilt = atan2(y, x);
-    }
-    Some(tilts)
+    let [red, green, blue] = votes.map(angle);
+    Some([red?, green?, blue?])
 }

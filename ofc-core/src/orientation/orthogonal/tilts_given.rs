@@ -14,7 +14,7 @@ use super::annealing;
 use super::result::OrthogonalError;
 use super::sample::{CELL, Sample};
 use crate::light::constrained_slant::{self, NearestSlants};
-use crate::math::mat3::{IDENTITY, Mat3};
+use crate::math::mat3::{self, IDENTITY, Mat3};
 use crate::orientation::integrability::{self, Integrability};
 use crate::orientation::matrix;
 use crate::picture::{Image, Window};
@@ -116,7 +116,7 @@ pub(crate) fn search(
     let problem = Problem { sample, norms, cosines, tilts, residual_limit: nearest.residual_rms + slack };
     let mut best: Option<TiltIntegrability> = None;
     let mut consider = |slants| {
-        let f_inverse = problem.f_inverse(slants);
+        let Some(f_inverse) = problem.f_inverse(slants) else { return };
         let Some(integral) = integrability::integral(image, &inliers, &f_inverse) else { return };
         if integral.mean.is_finite() && best.is_none_or(|best| integral.mean < best.integral.mean) {
             let residual_rms = constrained_slant::residual_rms(tilts, cosines, slants);
@@ -149,8 +149,9 @@ struct Problem<'w> {
 }
 
 impl Problem<'_> {
-    fn f_inverse(&self, slants: [f64; 3]) -> Mat3 {
-        constrained_slant::inverse(&matrix::compose(self.norms, slants, self.tilts))
+    /// `None` where these slants make F singular.
+    fn f_inverse(&self, slants: [f64; 3]) -> Option<Mat3> {
+        mat3::inverse(&matrix::compose(self.norms, slants, self.tilts))
     }
 
     /// (15) on the sample; infinite for slants that are not allowed, or make F singular.
@@ -161,8 +162,8 @@ impl Problem<'_> {
         if !in_range || constrained_slant::residual_rms(self.tilts, self.cosines, slants) > limit {
             return f64::INFINITY;
         }
-        let cost = self.sample.integral(&self.f_inverse(slants));
-        if cost.is_finite() { cost } else { f64::INFINITY }
+        let cost = self.f_inverse(slants).map(|f_inverse| self.sample.integral(&f_inverse));
+        cost.filter(|cost| cost.is_finite()).unwrap_or(f64::INFINITY)
     }
 
     /// The best points of the grid, best first, and the least-squares slants.
