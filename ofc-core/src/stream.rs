@@ -235,7 +235,7 @@ pub struct State {
     strata: Strata,
     second_differences: (f64, u64),
     differences: pentland::Sums,
-    /// Those of the frames before.
+    /// Differences of the frames before.
     history: pentland::Sums,
     inlier_count: usize,
     rows: Rows,
@@ -271,7 +271,7 @@ impl State {
         if holds { Ok(()) } else { Err(StreamError::Size) }
     }
 
-    /// As [`Self::new`] for what [`Self::check_size`] has seen: made where it is put, without a copy on the stack.
+    /// Does what [`Self::new`] does, for what [`Self::check_size`] has seen: made where it is put, without a copy on the stack.
     #[must_use]
     #[expect(clippy::inline_always, reason = "three kilobytes that should not be moved")]
     #[inline(always)]

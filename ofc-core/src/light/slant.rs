@@ -34,9 +34,9 @@ pub struct Estimate {
 /// Mean and mean square of each channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moments {
-    /// <I>.
+    /// `<I>`, of eq. 23.
     pub mean: [f64; 3],
-    /// <I^2>.
+    /// `<I^2>`, of eq. 23.
     pub mean_square: [f64; 3],
 }
 

@@ -295,7 +295,7 @@ fn keep(row: &Image, memory: &mut Memory) {
     row.for_each_window(|window| keep_window(width, window, window.masked, memory.values));
 }
 
-/// The same of one window: red is NaN for all but `bits`.
+/// Keeps one window of a row: red is NaN for all but `bits`.
 #[inline(never)]
 pub(super) fn keep_window(width: usize, window: &Window, bits: u64, values: &mut [f32]) {
     for (channel, color) in window.color.iter().enumerate() {

@@ -37,7 +37,7 @@ impl State {
     /// `normals` is width times (x, y, z). Frame: x right, y up, z toward the camera.
     ///
     /// # Errors
-    /// As [`Self::normals`].
+    /// The errors of [`Self::normals`].
     pub fn packed_normals(&self, row: &Image, packed: &mut [u8]) -> Result<(), StreamError> {
         let orientation = self.orientation().ok_or(StreamError::NotSolved)?;
         self.check(row)?;
@@ -62,7 +62,7 @@ impl State {
     /// `flags` is one byte a pixel.
     ///
     /// # Errors
-    /// As [`Self::normals`].
+    /// The errors of [`Self::normals`].
     pub fn inliers(&self, row: &Image, flags: &mut [u8]) -> Result<(), StreamError> {
         self.orientation().ok_or(StreamError::NotSolved)?;
         self.check(row)?;

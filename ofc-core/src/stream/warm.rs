@@ -132,7 +132,7 @@ impl State {
         Some(change)
     }
 
-    /// The same of the slants; `None`, with nothing done, where F is rank-deficient.
+    /// Adopts these slants, with this form of C and these tilts; `None`, with nothing done, where F is rank-deficient.
     #[inline(never)]
     fn adopt_slants(
         &mut self,
@@ -152,7 +152,7 @@ impl State {
         Some(change)
     }
 
-    /// The same of C, the transformation kept; `None`, with nothing done, where F is rank-deficient.
+    /// Adopts this form of C and keeps the transformation; `None`, with nothing done, where F is rank-deficient.
     #[inline(never)]
     fn adopt_form(&mut self, form: &Coefficients) -> Option<([f64; 3], [f64; 3])> {
         let ellipsoid = ellipsoid::decompose(form).ok()?;

@@ -16,7 +16,7 @@ const LARGEST: f64 = PI - 0.01;
 /// The slants of the three channels' lights in [0, pi): above pi/2 the light is behind the object, an answer of eq. 23
 /// that Table 1 prints (91.70 degrees).
 ///
-/// The statistic is <I^2>^(1/2) / <I>, which is 3/(2 sqrt 2) = 1.0607 at slant 0; below that the answer is 0 and
+/// The statistic is `<I^2>^(1/2) / <I>`, which is 3/(2 sqrt 2) = 1.0607 at slant 0; below that the answer is 0 and
 /// [`Reach::BelowZero`], as in Table 1.
 ///
 /// `inliers` gives the bits of a window's pixels, which should be those that see the light ("non-zero pixels"). `None`
@@ -36,13 +36,13 @@ pub fn slants(image: &Image, inliers: impl Fn(&Window) -> u64) -> Option<[Estima
     Some(estimates)
 }
 
-/// <I^2>^(1/2) / <I> by eq. 23: it grows with the slant.
+/// `<I^2>^(1/2) / <I>` by eq. 23: it grows with the slant.
 #[must_use]
 pub fn ratio(slant: f64) -> f64 {
     0.5 * sqrt(1.0 + sincos(slant).1) / mean(slant)
 }
 
-/// <I> / rho by eq. 23: with the measured <I> it gives the strength rho of the light.
+/// `<I> / rho` by eq. 23: with the measured `<I>` it gives the strength rho of the light.
 #[must_use]
 pub fn mean(slant: f64) -> f64 {
     let (s, c) = sincos(slant);

@@ -2,7 +2,7 @@
 //!
 //! The method takes the normals' tilt to be uniform and their slant b to have the density cos b, which is not a
 //! sphere's (sin 2b): flat parts count for more, and on a sphere slants of 0, 30, 60 and 85 degrees read 24, 46, 70 and
-//! 84. Then f3(s) = E[I] / E[I^2]^(1/2), where I is zero in shadow, falls from
+//! 84. Then f3(s) = `E[I] / E[I^2]^(1/2)`, where I is zero in shadow, falls from
 //! 0.962 at s = 0 to 0.551 at pi/2. The paper approximates f3 by a polynomial of degree seven in cos s (0.5577 + 0.6240 c +
 //! 0.1882 c^2 - 0.6514 c^3 - ..., as published code has it); this is the integral itself, which that polynomial follows
 //! to 0.007.
@@ -21,7 +21,7 @@ const INTERVALS: u32 = 32;
 
 /// The slants of the three channels' lights in [0, pi/2].
 ///
-/// The statistic is <I> / <I^2>^(1/2). Above f3(0) the answer is 0 and [`Reach::BelowZero`], below f3(pi/2) it is pi/2 and
+/// The statistic is `<I> / <I^2>^(1/2)`. Above f3(0) the answer is 0 and [`Reach::BelowZero`], below f3(pi/2) it is pi/2 and
 /// [`Reach::AboveLargest`].
 ///
 /// `object` gives the bits of a window's pixels: all of the object, its self-shadowed parts too, which are not inliers.
@@ -41,7 +41,7 @@ pub fn slants(image: &Image, object: impl Fn(&Window) -> u64) -> Option<[Estimat
     Some(estimates)
 }
 
-/// E[I] / E[I^2]^(1/2) of a surface whose normals' slants b have the density cos b, under a light at `slant` in
+/// `E[I] / E[I^2]^(1/2)` of a surface whose normals' slants b have the density cos b, under a light at `slant` in
 /// [0, pi/2].
 #[must_use]
 pub fn f3(slant: f64) -> f64 {

@@ -96,7 +96,7 @@ pub fn tilts_given(
     search(image, inliers, norms, cosines, tilts, params.slack, workspace)
 }
 
-/// As [`tilts_given`], on as many cells as the workspace has room for.
+/// Does what [`tilts_given`] does, on as many cells as the workspace has room for.
 pub(crate) fn search(
     image: &Image,
     inliers: impl Fn(&Window) -> u64,

@@ -166,7 +166,7 @@ fn quarter(block: &mut [Row], twiddles: &[f32]) {
     }
 }
 
-/// As [`quarter`] where nothing is left to turn.
+/// The last step of [`quarter`]s, in which nothing is left to turn.
 fn quarter_last([a, b, c, d]: &mut [Row; 4]) {
     for (((a, b), c), d) in a.iter_mut().zip(b).zip(c).zip(d) {
         [*a, *b, *c, *d] = fourth_roots([*a, *b, *c, *d]);

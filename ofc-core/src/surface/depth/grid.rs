@@ -276,7 +276,7 @@ impl Span {
         row.get(first..last).unwrap_or_default()
     }
 
-    /// As [`cut`](Self::cut), for writing.
+    /// The part of a row that [`cut`](Self::cut) gives, for writing.
     pub fn cut_mut<'a>(&self, row: &'a mut [f32]) -> &'a mut [f32] {
         let [first, last] = self.active;
         row.get_mut(first..last).unwrap_or_default()

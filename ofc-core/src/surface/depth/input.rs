@@ -17,7 +17,7 @@ impl<'a, T> Plane<'a, T> {
     /// A view of `width` x `height` pixels of `channels` numbers each, rows `row_stride` numbers (not bytes) apart.
     ///
     /// # Errors
-    /// As [`span`], and [`ImageError::TooShort`] when `data` ends before the last row does.
+    /// What [`span`] refuses, and [`ImageError::TooShort`] when `data` ends before the last row does.
     pub fn new(
         data: &'a [T],
         width: usize,

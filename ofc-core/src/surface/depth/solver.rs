@@ -240,7 +240,7 @@ fn energy<O: Operator>(operator: &O, spans: &[f32], array: &[f32], buffers: &mut
     product
 }
 
-/// As [`advance`], without an array that holds `A direction`.
+/// Does what [`advance`] does, without an array that holds `A direction`.
 fn advance_directly<O: Operator>(
     operator: &O,
     spans: &[f32],
