@@ -74,7 +74,7 @@ pub struct ofc_depth_params {
     pub min_n3: f64,
     /// Weight of a pixel of the prior against the equation of one edge; 0 ignores the prior: in [0, 1e6]. Default 1e-3.
     pub prior_weight: f64,
-    /// For OFC_DEPTH_COUPLED, the weight of the squared difference of neighbouring slopes against that of a pixel's slope
+    /// For OFC_DEPTH_COUPLED, the weight of the squared difference of neighboring slopes against that of a pixel's slope
     /// from its data: in [1e-3, 1e3]. Default 0.1.
     pub smoothness: f64,
     /// OFC_DEPTH_POISSON by default.
@@ -161,7 +161,7 @@ fn plane<'a, T: Plain>(
 
 /// Integrates normals or gradients into depth, which grows toward the camera.
 ///
-/// The depths of two neighbouring pixels should differ by the mean of their slopes times the pixel pitch; depth is the
+/// The depths of two neighboring pixels should differ by the mean of their slopes times the pixel pitch; depth is the
 /// least-squares solution of these equations, with natural boundaries, found by conjugate gradients with geometric
 /// multigrid as preconditioner. Unconnected regions have zero mean each.
 ///

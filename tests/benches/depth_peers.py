@@ -6,7 +6,7 @@
 Makes a virtual environment (by default target/depth-peers) with numpy, scipy and pyamg, builds the release example
 `depth_timer`, and prints for a rectangle, a disc and a disc with necks, holes and islands: the time of every peer, the
 error against the true surface, and the distance from the exact least-squares solution. Nothing of it is part of the normal
-build. `--direct` adds the sparse factorisation (SciPy's SuperLU) as a peer and reference; it is slow above 512.
+build. `--direct` adds the sparse factorization (SciPy's SuperLU) as a peer and reference; it is slow above 512.
 
 The peers:
   scipy DCT f32   divergence and scipy.fft.dctn in float32, natural boundaries; rectangles only, normals included. It
@@ -153,11 +153,11 @@ def main():
         truth, normals, mask = scene(np, size, kind)
         labels, count = ndimage.label(mask)
 
-        def centred(depth):
+        def centered(depth):
             values, inside = depth.astype(float)[mask], labels[mask]
             return values - (np.bincount(inside, values) / np.maximum(np.bincount(inside), 1))[inside]
 
-        truth = centred(np.where(mask, truth, 0))
+        truth = centered(np.where(mask, truth, 0))
         if kind == "rectangle":
             rounds = [
                 (ours(normals, mask, repeats=3), timed(lambda: dct_poisson(np, scipy.fft, normals), 3))
@@ -200,14 +200,14 @@ def main():
 
             values, best, median = timed(factor, 1)
             rows.append(("scipy SuperLU", spread(values), best, median, ""))
-            exact = centred(spread(values))
+            exact = centered(spread(values))
         else:
             # Close enough to exact to tell the others apart.
             solver = pyamg.ruge_stuben_solver(matrix)
-            exact = centred(spread(solver.solve(right, tol=1e-10, accel="cg", maxiter=100)))
+            exact = centered(spread(solver.solve(right, tol=1e-10, accel="cg", maxiter=100)))
         rms = lambda values: float(np.sqrt(np.mean(values**2)))
         for name, depth, best, median, note in rows:
-            depth = centred(depth)
+            depth = centered(depth)
             print(f"{kind:14}{name:18}{best:9.1f}{median:9.1f}  {rms(depth - truth):10.3e}  {rms(depth - exact):10.3e}  {note}")
         print(f"{kind:14}{'exact':18}{'':18}  {rms(exact - truth):10.3e}", flush=True)
 

@@ -48,7 +48,7 @@ fn face(u: f64, v: f64) -> f64 {
         (0.035, u, [0.0, -0.16], [0.08, 0.06]),
     ];
     let relief: f64 =
-        features.iter().map(|&(height, u, centre, width)| height * gaussian(u, v, centre, width)).sum();
+        features.iter().map(|&(height, u, center, width)| height * gaussian(u, v, center, width)).sum();
     ellipsoid(u, v, [0.0, 0.22], [0.35, 0.50, 0.44]) + relief
 }
 

@@ -70,7 +70,7 @@ impl System {
     }
 }
 
-/// Pairs of neighbours: (left, right) and (lower, upper).
+/// Pairs of neighbors: (left, right) and (lower, upper).
 fn neighbors(width: usize, height: usize) -> [Vec<(usize, usize)>; 2] {
     let mut pairs = [Vec::new(), Vec::new()];
     for i in 0..width * height {

@@ -113,7 +113,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// `surface` under the colour-orientation matrix `f`, without noise; shadows are black.
+    /// `surface` under the color-orientation matrix `f`, without noise; shadows are black.
     pub fn render(width: usize, height: usize, f: Matrix, surface: impl Surface) -> Self {
         let (middle_x, middle_y) = (0.5 * (width - 1) as f64, 0.5 * (height - 1) as f64);
         let mut normals = Vec::with_capacity(width * height);

@@ -9,7 +9,7 @@ pub const LAST_PRINTED_DIGIT: f64 = 0.01;
 pub const ONE_DECIMAL: f64 = 0.05;
 
 /// The same formula in f64 in another order of summation, relative: thousands of roundings of 1e-16, some of them
-/// cancelling.
+/// canceling.
 pub const REORDERED_SUM: f64 = 1e-11;
 /// Results stored as f32, relative: half a unit in the last place is 6e-8.
 pub const STORED_AS_F32: f64 = 1e-6;
@@ -44,7 +44,7 @@ pub const PHOTOGRAPH_SEED: f64 = 0.5;
 /// and what is left of the cap is no longer symmetric. With Table 1's lights that turns the tilts by up to 20 degrees,
 /// however small the noise is.
 pub const SPHERE_IN_NOISE: f64 = 5.0;
-/// Ellipsoids with axes 1.1 : 1 : 0.9, degrees: Pentland's tilt favours the direction that bends more.
+/// Ellipsoids with axes 1.1 : 1 : 0.9, degrees: Pentland's tilt favors the direction that bends more.
 pub const ELLIPSOID_TILT: f64 = 6.0;
 /// Spheres without noise from end to end, degrees: colors are f32.
 pub const SPHERE: f64 = 0.01;

@@ -291,8 +291,8 @@ fn noise_is_gaussian_and_the_same_whatever_else() {
         assert!(within(mean, 0.0, 1.0) && within(variance, 1.0, 2.0), "{mean} {variance}");
         assert!(within(skew, 0.0, 15.0) && within(fourth, 3.0, 96.0), "{skew} {fourth}");
         assert!(within(moment(&|n| n[k] * n[(k + 1) % 3] / 4.0), 0.0, 1.0));
-        let neighbours: f64 = first.windows(2).map(|w| w[0][k] * w[1][k] / 4.0).sum::<f64>() / count;
-        assert!(within(neighbours, 0.0, 1.0));
+        let neighbors: f64 = first.windows(2).map(|w| w[0][k] * w[1][k] / 4.0).sum::<f64>() / count;
+        assert!(within(neighbors, 0.0, 1.0));
         let one_sigma = first.iter().filter(|n| n[k].abs() < 2.0).count() as f64 / count;
         assert!((one_sigma - 0.6827).abs() < 0.01);
     }
@@ -347,7 +347,7 @@ fn integers_are_rounded_and_limited() {
                 image.read(i % 77, i / 77, &mut window);
                 for (got, want) in window.pixel(0).into_iter().zip(color) {
                     let want = f64::from(*want).clamp(0.0, largest);
-                    // The f32 picture is itself rounded: at a half either neighbour will do.
+                    // The f32 picture is itself rounded: at a half either neighbor will do.
                     assert!((f64::from(got) - want).abs() <= 0.5 + 1e-2, "{got} is not {want}");
                     assert_eq!(got, got.round());
                 }
@@ -515,7 +515,7 @@ fn bad_input_is_refused_and_outputs_stay_as_they_were() {
     let mut rows = Rows { values: &mut normals[..], row_stride: 13 };
     assert_eq!(normals_from_depth(&map, &mut rows), Err(RenderError::Size));
     assert_eq!(normals, [7.0; 48]);
-    // There is no surface where the depth is not finite: its neighbours have one-sided differences.
+    // There is no surface where the depth is not finite: its neighbors have one-sided differences.
     normals_from_depth(&map, &mut Rows { values: &mut normals[..], row_stride: 12 }).unwrap();
     assert_eq!(
         normals.as_chunks::<3>().0[..4],

@@ -1,6 +1,6 @@
 //! The one-dimensional least median of squares: where most of a set of numbers lies.
 //!
-//! The minimiser of the median squared distance is the midpoint of the shortest interval that holds half of the
+//! The minimizer of the median squared distance is the midpoint of the shortest interval that holds half of the
 //! numbers, found exactly on the sorted numbers.
 //!
 //! # Reference

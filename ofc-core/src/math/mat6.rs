@@ -1,6 +1,6 @@
 //! 6x6 matrices by columns: products, Cholesky's factors and the inverse they give, and Householder's QR.
 //!
-//! nalgebra's decompositions work on views whose sizes it compares at run time, and with some optimisations the panic for
+//! nalgebra's decompositions work on views whose sizes it compares at run time, and with some optimizations the panic for
 //! sizes that do not fit stays in the linked binary: its QR where code is made small, its LU always. Its Cholesky
 //! factors and inverse did not panic in the shipped library and gave the same bits, but made it 2,816 bytes larger, and every
 //! byte counts in the firmware.

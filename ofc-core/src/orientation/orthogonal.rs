@@ -4,7 +4,7 @@
 //! member as in section 2.4 the normal is n = (r1.N, r2.N, r3.N); the paper's R of eqs. 13-14 is the matrix that has
 //! r1, r2, r3 as columns. So F^-1 = (rows) G0 and F = G0^-1 (rows)^T.
 //!
-//! [`annealing`] minimises the integral (15) itself; [`closed_form`] takes r3 from the smoothness condition (16) and the
+//! [`annealing`] minimizes the integral (15) itself; [`closed_form`] takes r3 from the smoothness condition (16) and the
 //! remaining angle from (15). Both end in [`Found`]: neither can tell a surface from its convex/concave twin, for which
 //! rows r1 and r2 have the other sign (section 2.4), so both are given, and tilts from elsewhere choose between them
 //! where there are any.

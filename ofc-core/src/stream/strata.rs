@@ -1,7 +1,7 @@
 //! A stratified sample of a frame whose pixels are not counted before they come, and that sample as pixels.
 //!
 //! A stratum is so many usable pixels one after the other, and each gives one of them at random. It begins with one
-//! pixel; whenever the room is full, neighbouring strata become one, which keeps the pixel of either. So all pixels are
+//! pixel; whenever the room is full, neighboring strata become one, which keeps the pixel of either. So all pixels are
 //! kept, in their windows, where there is room for them, and otherwise one of each 2^k, at least half as many as there is
 //! room for.
 
@@ -124,7 +124,7 @@ pub(super) struct Sampled<'a> {
     pub places: &'a [u8],
     /// How samples were stored.
     pub format: Sample,
-    /// The second differences of the frame's usable pixels, for a sample without neighbours.
+    /// The second differences of the frame's usable pixels, for a sample without neighbors.
     pub second_differences: (f64, u64),
 }
 

@@ -1,6 +1,6 @@
 //! Depth from normals or gradients, over any mask, in memory that the caller gives.
 //!
-//! The depths of two neighbouring pixels should differ by the mean of their slopes times the pixel pitch; depth is the
+//! The depths of two neighboring pixels should differ by the mean of their slopes times the pixel pitch; depth is the
 //! least-squares solution of these equations, one for every edge between pixels of the mask, with natural boundaries.
 //! [`Method`] says what becomes of pixels whose slope is not to be trusted.
 //!
@@ -30,7 +30,7 @@
 //! assert!((depth[0] - depth[1] - 0.75).abs() < 1e-6);
 //! ```
 
-#![allow(clippy::inline_always, reason = "row kernels are only fast when they melt into one vectorised loop")]
+#![allow(clippy::inline_always, reason = "row kernels are only fast when they melt into one vectorized loop")]
 
 mod coarsen;
 mod cosine_transform;

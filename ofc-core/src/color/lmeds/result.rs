@@ -47,7 +47,7 @@ impl core::error::Error for FitError {}
 /// What the regression found. Coefficients are in (pixel value)^-2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
-    /// The z that minimises the median squared residual; that of least squares where that is the method.
+    /// The z that minimizes the median squared residual; that of least squares where that is the method.
     pub robust: Coefficients,
     /// The square root of that median, over all usable pixels.
     pub median_residual: f64,

@@ -45,7 +45,7 @@ impl<P: Pixels> Problem<'_, P> {
     }
 
     /// The smallest difference in a channel between an inlier and the one before it, other than none: how finely the
-    /// picture is quantised, whatever the type of its pixels. Zero when there are no differences.
+    /// picture is quantized, whatever the type of its pixels. Zero when there are no differences.
     #[inline(never)]
     fn smallest_step(&self, inliers: &Inliers) -> f64 {
         let mut smallest = f32::INFINITY;

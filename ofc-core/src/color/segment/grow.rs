@@ -70,11 +70,11 @@ impl Field<'_> {
             let west = if column > 0 { index.wrapping_sub(1) } else { usize::MAX };
             let east = if column + 1 < width { index + 1 } else { usize::MAX };
             // Above the first row the index wraps around and is outside, as it is below the last.
-            for neighbour in [west, east, index.wrapping_sub(width), index + width] {
-                if let (Some(&FREE), Some(&color)) = (labels.get(neighbour), colors.get(neighbour))
+            for neighbor in [west, east, index.wrapping_sub(width), index + width] {
+                if let (Some(&FREE), Some(&color)) = (labels.get(neighbor), colors.get(neighbor))
                     && single_residual(&form, color).abs() <= tolerance
                 {
-                    end = take(neighbour, labels, queue);
+                    end = take(neighbor, labels, queue);
                 }
             }
         }

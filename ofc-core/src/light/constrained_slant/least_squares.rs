@@ -8,7 +8,7 @@ use crate::math::mat3;
 use core::f64::consts::FRAC_PI_2;
 use libm::sqrt;
 
-/// Slants that minimise the sum of the squared residuals of eqs. 24.
+/// Slants that minimize the sum of the squared residuals of eqs. 24.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestSlants {
     /// The slants of the three channels, in [0, pi/2], radians.
@@ -119,7 +119,7 @@ fn starts(constraints: &Constraints) -> heapless::Vec<Start, MAX_STARTS> {
             let ([c13_before, c13, c13_behind], [c23_before, c23, c23_behind]) = (&c13, &c23);
             for k in 0..GRID {
                 let cost = sum(here, c13, c23, k);
-                let neighbours = [
+                let neighbors = [
                     sum(north, c13_before, c23, k),
                     sum(south, c13_behind, c23, k),
                     sum(west, c13, c23_before, k),
@@ -127,7 +127,7 @@ fn starts(constraints: &Constraints) -> heapless::Vec<Start, MAX_STARTS> {
                     sum(here, c13, c23, k.wrapping_sub(1)),
                     sum(here, c13, c23, k + 1),
                 ];
-                if neighbours.iter().all(|&neighbour| cost <= neighbour) {
+                if neighbors.iter().all(|&neighbor| cost <= neighbor) {
                     keep(&mut starts, Start { cost, slants: [i, j, k].map(grid_slant) });
                 }
             }

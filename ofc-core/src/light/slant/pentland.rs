@@ -1,7 +1,7 @@
 //! Pentland's slant, from the mean gradient and the spread of the directional derivatives.
 //!
 //! # Reference
-//! Section 3.2, eq. 22. A. P. Pentland, "Finding the illuminant direction", J. Opt. Soc. Am. 72, 1982; criticised by
+//! Section 3.2, eq. 22. A. P. Pentland, "Finding the illuminant direction", J. Opt. Soc. Am. 72, 1982; criticized by
 //! Chojnacki, Brooks and Gibbins, and Lee and Rosenfeld.
 
 use super::{Estimate, Reach};

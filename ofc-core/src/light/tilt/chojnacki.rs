@@ -1,7 +1,7 @@
 //! Chojnacki, Brooks and Gibbins' tilt: Pentland's over a disc without shadows.
 //!
 //! Means of differences are decided by the border of the pixels they are taken over (they telescope). A disc's border
-//! favours no direction, so on a sphere, or any surface whose normals are spread evenly about the disc's middle one,
+//! favors no direction, so on a sphere, or any surface whose normals are spread evenly about the disc's middle one,
 //! the mean gradient points to the light exactly.
 //!
 //! # Reference
@@ -41,7 +41,7 @@ impl Disc {
 /// The tilts of the three channels' lights in (-pi, pi], counter-clockwise from x, for a convex surface, from the inliers
 /// inside `disc`, by eq. 21 with the axes for directions.
 ///
-/// `None` when the disc holds no pair of neighbouring inliers in a row or a column, or a channel's mean gradient is
+/// `None` when the disc holds no pair of neighboring inliers in a row or a column, or a channel's mean gradient is
 /// zero.
 pub fn tilts(image: &Image, inliers: impl Fn(&Window) -> u64, disc: &Disc) -> Option<[f64; 3]> {
     lee_rosenfeld::tilts(image, |window| {

@@ -13,7 +13,7 @@ use crate::picture::{Image, Window};
 /// The tilts of the three channels' lights in (-pi, pi], counter-clockwise from x, for a convex surface.
 ///
 /// `inliers` gives the bits of a window's pixels; the method wants those that see the light, shadows left out. `None`
-/// when the rows or the columns hold no pair of neighbouring inliers, or a channel's mean gradient is zero.
+/// when the rows or the columns hold no pair of neighboring inliers, or a channel's mean gradient is zero.
 ///
 /// # Accuracy
 /// Exact in the mean on a sphere. Means of differences telescope: what decides is the border of the inliers.

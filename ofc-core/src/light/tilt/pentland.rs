@@ -11,7 +11,7 @@ use crate::picture::{Image, WINDOW, Window};
 use core::f64::consts::FRAC_1_SQRT_2;
 use libm::hypot;
 
-/// The differences between neighbouring inliers along the axes and the diagonals, summed over blocks.
+/// The differences between neighboring inliers along the axes and the diagonals, summed over blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sums(FourDirections<1>);
 
@@ -65,7 +65,7 @@ impl Sums {
     }
 }
 
-/// The tilts from differences between neighbouring inliers along the axes and the diagonals.
+/// The tilts from differences between neighboring inliers along the axes and the diagonals.
 ///
 /// `inliers` gives the bits of a window's inliers. `None` when a direction has no pair of inliers, or a channel's mean
 /// gradient is zero: then it has no tilt.

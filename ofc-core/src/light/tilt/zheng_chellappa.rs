@@ -1,14 +1,14 @@
-//! Zheng and Chellappa's tilt: every neighbourhood votes with the direction of its gradient, whatever its strength.
+//! Zheng and Chellappa's tilt: every neighborhood votes with the direction of its gradient, whatever its strength.
 //!
-//! In each neighbourhood the derivatives along several directions are fitted by the gradient `(x_L, y_L)`, and the tilt
-//! is that of the mean of `(x_L, y_L) / sqrt(x_L^2 + y_L^2)`. Here a neighbourhood is a cell of 2 x 2 pixels and the
+//! In each neighborhood the derivatives along several directions are fitted by the gradient `(x_L, y_L)`, and the tilt
+//! is that of the mean of `(x_L, y_L) / sqrt(x_L^2 + y_L^2)`. Here a neighborhood is a cell of 2 x 2 pixels and the
 //! directions are the axes and the diagonals; for these the least squares fit is the mean of the two rows' (columns')
 //! differences, which the diagonals only confirm. A vote counts the same however strong the gradient is, so neither
 //! the steep border nor a highlight decides alone, but noise has as loud a voice as shading where the picture is flat.
 //!
 //! # Reference
 //! Q. Zheng, R. Chellappa, "Estimation of illuminant direction, albedo, and shape from shading", PAMI 13, 1991, the
-//! local estimate. The paper's neighbourhoods are larger; their size, and its second estimate from occluding contours,
+//! local estimate. The paper's neighborhoods are larger; their size, and its second estimate from occluding contours,
 //! are not followed here.
 
 use super::angle;

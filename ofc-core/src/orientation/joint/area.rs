@@ -51,7 +51,7 @@ mod tests {
     fn parts_are_counted_from_the_lower_left() {
         let parts = Area { from: [10, 20], size: [50, 100] }.parts();
         assert_eq!(parts.middle(), [35.0, -69.0]);
-        // The top left pixel, its right neighbours up to the border, and the bottom right pixel.
+        // The top left pixel, its right neighbors up to the border, and the bottom right pixel.
         assert_eq!(parts.of([10.0, -20.0]), 20);
         assert_eq!(parts.of([19.0, -20.0]), 20);
         assert_eq!(parts.of([20.0, -20.0]), 21);

@@ -15,7 +15,7 @@ pub(super) const GRADIENTS: usize = 7;
 /// Numbers of a cell while its sums are taken.
 pub(super) const SUMS: usize = NUMBERS + RESIDUALS + GRADIENTS;
 
-/// Numbers of a cell of the smallest size and of the window that it is merged to with its neighbours.
+/// Numbers of a cell of the smallest size and of the window that it is merged to with its neighbors.
 pub(super) const ROOM: usize = NUMBERS + record::ROOM;
 
 /// How many of the smallest squares a picture has.

@@ -45,7 +45,7 @@ impl Default for Params {
     }
 }
 
-/// The slants that minimise (15).
+/// The slants that minimize (15).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TiltIntegrability {
     /// Slants of f1, f2, f3 in [0, pi/2], radians.
@@ -204,7 +204,7 @@ impl Problem<'_> {
                 let from = best;
                 let [s1, s2, s3] = from.slants;
                 for d in [step, -step] {
-                    let neighbours = [
+                    let neighbors = [
                         [s1 + d, s2, s3],
                         [s1, s2 + d, s3],
                         [s1, s2, s3 + d],
@@ -216,7 +216,7 @@ impl Problem<'_> {
                         [s1, s2 + d, s3 - d],
                         [s1 + d, s2 + d, s3 + d],
                     ];
-                    for slants in neighbours {
+                    for slants in neighbors {
                         let cost = self.cost(slants);
                         if cost < best.cost {
                             best = Start { slants, cost };

@@ -380,7 +380,7 @@ fn add_masses<O: Operator>(operator: &O, spans: &[f32], coarse: &mut CoarseArray
 }
 
 impl<P: Packing> Fine<'_, P> {
-    /// Whether the pixel and its neighbours have weight one and no mass, and all stand for their own blocks.
+    /// Whether the pixel and its neighbors have weight one and no mass, and all stand for their own blocks.
     #[inline(always)]
     fn is_unit(&self, index: usize) -> bool {
         let stride = self.grid.stride();
@@ -409,7 +409,7 @@ fn are_one(array: &[f32], index: usize) -> bool {
 }
 
 impl Coarse<'_> {
-    /// Whether all edges of the pixel weigh one, there is no mass, and the neighbours stand for their own blocks.
+    /// Whether all edges of the pixel weigh one, there is no mass, and the neighbors stand for their own blocks.
     #[inline(always)]
     fn is_unit(&self, index: usize) -> bool {
         let stride = self.grid.stride();

@@ -1,7 +1,7 @@
 //! Fast Fourier transforms of several signals side by side, of any length without prime factors above 7.
 //!
 //! Decimation in frequency, in place, in radices 4, 2, 3, 5 and 7: frequency k ends up where [`Lengths::fill_order`] says. Each
-//! number of a [`Row`] belongs to a signal of its own, so that all arithmetic is on neighbouring numbers and nobody needs
+//! number of a [`Row`] belongs to a signal of its own, so that all arithmetic is on neighboring numbers and nobody needs
 //! to know how wide the machine's registers are.
 //!
 //! # Reference

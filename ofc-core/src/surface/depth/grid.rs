@@ -1,7 +1,7 @@
 //! Where everything lies in the caller's workspace: padded grids, each half as wide and high as the one before.
 //!
 //! A grid is stored with one column of padding (it stands to the right of a row and to the left of the next), a row
-//! above, a row below and one number more. The padding stays zero, so that every pixel has four neighbours and no
+//! above, a row below and one number more. The padding stays zero, so that every pixel has four neighbors and no
 //! kernel knows about borders.
 
 /// Coarser grids at most: halving the longest side that [`MAX_PIXELS`](super::parameters::MAX_PIXELS) allows.
@@ -75,7 +75,7 @@ impl Grid {
         array.get_mut(start..start + self.width).unwrap_or_default()
     }
 
-    /// Row `y` with the padding (or the neighbour's padding) before and after it.
+    /// Row `y` with the padding (or the neighbor's padding) before and after it.
     pub fn padded_row<'a>(&self, array: &'a [f32], y: usize) -> &'a [f32] {
         let start = self.start(y) - 1;
         array.get(start..start + self.width + 2).unwrap_or_default()
@@ -117,9 +117,9 @@ pub(super) struct FineArrays<'a> {
 
 /// The arrays of one coarse grid.
 pub(super) struct CoarseArrays<'a> {
-    /// Weight of the edge to the right neighbour; its sign is half of the attachment.
+    /// Weight of the edge to the right neighbor; its sign is half of the attachment.
     pub east: &'a mut [f32],
-    /// Weight of the edge to the neighbour below; its sign is the other half.
+    /// Weight of the edge to the neighbor below; its sign is the other half.
     pub south: &'a mut [f32],
     /// What the equation of a pixel has on the diagonal beyond its edges.
     pub mass: &'a mut [f32],
@@ -241,7 +241,7 @@ fn cut(mut rest: &mut [f32], grid: Grid) -> Option<CoarseArrays<'_>> {
 pub(super) struct Span {
     /// From the first to behind the last pixel that has an equation.
     pub active: [usize; 2],
-    /// The pixels (within `active`) that have four edges of weight one and no mass, and whose neighbours stand for
+    /// The pixels (within `active`) that have four edges of weight one and no mass, and whose neighbors stand for
     /// their own blocks.
     pub unit: [usize; 2],
 }

@@ -1,7 +1,7 @@
 //! The equations of one row: edge weights and masses, at the finest grid out of one number a pixel, at coarse grids
 //! stored, and all one inside a span.
 //!
-//! Every equation reads `sum over neighbours j of w_ij (z_i - z_j) + mass_i z_i = right_i`.
+//! Every equation reads `sum over neighbors j of w_ij (z_i - z_j) + mass_i z_i = right_i`.
 
 use super::grid::Grid;
 
@@ -10,7 +10,7 @@ use super::grid::Grid;
 pub(super) enum Attachment {
     /// It belongs to the block it lies in.
     Own,
-    /// It is cut off from the rest of its block and from its neighbours' blocks.
+    /// It is cut off from the rest of its block and from its neighbors' blocks.
     None,
     /// It belongs to the block beyond its horizontal edge out of the block.
     Beside,
@@ -38,7 +38,7 @@ impl Attachment {
     }
 }
 
-/// `slice[i]`; the bound is known where it matters and the branch is optimised away.
+/// `slice[i]`; the bound is known where it matters and the branch is optimized away.
 #[inline(always)]
 pub(super) fn at(slice: &[f32], i: usize) -> f32 {
     slice.get(i).copied().unwrap_or(0.0)
@@ -52,9 +52,9 @@ pub(super) fn copy(to: &mut [f32], from: &[f32]) {
     }
 }
 
-/// The coefficients of the equations of neighbouring pixels of one row.
+/// The coefficients of the equations of neighboring pixels of one row.
 pub(super) trait Coefficients: Sized {
-    /// Weights of the edges to the left, right, upper and lower neighbour of pixel `i`.
+    /// Weights of the edges to the left, right, upper and lower neighbor of pixel `i`.
     fn edges(&self, i: usize) -> [f32; 4];
     /// The mass of pixel `i`.
     fn mass(&self, i: usize) -> f32;
@@ -111,7 +111,7 @@ pub(super) trait Operator {
 
     /// The coefficients of the `n` pixels from index `start` on.
     fn row(&self, start: usize, n: usize) -> Option<Self::Row<'_>>;
-    /// Weight of the edge between pixel `index` and its right neighbour.
+    /// Weight of the edge between pixel `index` and its right neighbor.
     fn east(&self, index: usize) -> f32;
     /// Weight of the edge between pixel `index` and the one below.
     fn south(&self, index: usize) -> f32;

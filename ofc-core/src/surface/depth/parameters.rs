@@ -35,7 +35,7 @@ pub struct DepthParams {
     pub min_n3: f64,
     /// Weight of a pixel of the prior against the equation of one edge; zero ignores the prior: in [0, 1e6]. Default 1e-3.
     pub prior_weight: f64,
-    /// Weight of the squared difference of neighbouring slopes against that of a pixel's slope from its data, for
+    /// Weight of the squared difference of neighboring slopes against that of a pixel's slope from its data, for
     /// [`Method::Coupled`]: in [1e-3, 1e3]. Default 0.1.
     pub smoothness: f64,
 }

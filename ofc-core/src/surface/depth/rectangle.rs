@@ -186,7 +186,7 @@ fn is_one(row: &[f32]) -> bool {
 }
 
 /// The rise of the edge to the left of each pixel less that of the edge to its right: half the difference of its
-/// neighbours' slopes, but at the ends.
+/// neighbors' slopes, but at the ends.
 fn differ_along(p: &[f32], out: &mut [f32]) {
     let ([first, second, after @ ..], [before @ .., second_last, last]) = (p, p) else {
         out.fill(0.0);

@@ -1,6 +1,6 @@
 //! The right side of the equations: what the slopes, less the trend, want of every pixel.
 //!
-//! Between two neighbouring pixels the depth should differ by the mean of their slopes. Least squares over these
+//! Between two neighboring pixels the depth should differ by the mean of their slopes. Least squares over these
 //! equations, an edge each, has the normal equations `sum of w_ij (z_i - z_j) = sum of w_ij g_ij`.
 
 use super::grid::Span;
@@ -9,7 +9,7 @@ use super::regions::sum;
 use super::sweep::dot;
 use super::trend::Trend;
 
-/// Rows of slopes: p with its neighbours left and right, q with those above and below, in grid layout.
+/// Rows of slopes: p with its neighbors left and right, q with those above and below, in grid layout.
 struct Segment<'a> {
     p: [&'a [f32]; 3],
     q: [&'a [f32]; 3],

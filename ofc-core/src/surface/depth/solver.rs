@@ -2,7 +2,7 @@
 //!
 //! On a mask without necks and cuts the cycle alone nearly solves the equations; what it cannot represent on coarse
 //! grids, conjugate gradients find. The residual is carried along and never computed anew from the solution, so that
-//! rounding the solution to f32 (where neighbouring depths of hundreds of pixels differ in the last digits) does not
+//! rounding the solution to f32 (where neighboring depths of hundreds of pixels differ in the last digits) does not
 //! limit the accuracy.
 //!
 //! # Reference

@@ -40,7 +40,7 @@ pub(super) struct Point {
     pub inverse: f32,
 }
 
-/// A row and its neighbours: `center` has one more number at both ends.
+/// A row and its neighbors: `center` has one more number at both ends.
 #[derive(Clone, Copy)]
 pub(super) struct Rows<'a> {
     pub above: &'a [f32],
@@ -170,7 +170,7 @@ pub(super) fn descend<O: Operator>(
     let load = |y| Span::load(spans, y, grid.width);
     for y in 0..grid.height + 2 {
         if y < grid.height {
-            // The first step, from zero: neighbours do not matter yet.
+            // The first step, from zero: neighbors do not matter yet.
             let rows = rows_at(&grid, right, y);
             let (span, out) = (load(y), grid.row_mut(correction, y));
             map_row(operator, span, y, rows, grid.row(right, y), out, |p| first * p.inverse * p.right);

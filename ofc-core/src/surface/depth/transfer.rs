@@ -1,8 +1,8 @@
 //! Between a grid and the next coarser one: linear interpolation from the block a pixel lies in and the two blocks
 //! beyond its edges out of the block, and its transpose.
 //!
-//! A pixel lies a quarter of a block from its block's centre in both directions, so half of its own block and a
-//! quarter of each neighbour reproduce planes exactly. An edge of weight zero takes its block out of the mean.
+//! A pixel lies a quarter of a block from its block's center in both directions, so half of its own block and a
+//! quarter of each neighbor reproduce planes exactly. An edge of weight zero takes its block out of the mean.
 //!
 //! # Reference
 //! M. Khalil, P. Wesseling, "Vertex-centered and cell-centered multigrid for interface problems", J. Comput. Phys.
@@ -136,7 +136,7 @@ pub(super) fn restrict<O: Operator>(
         return;
     }
     let [own, beside, _] = UNIFORM;
-    // The blocks at both ends lack one neighbour inside the span and give to one outside of it.
+    // The blocks at both ends lack one neighbor inside the span and give to one outside of it.
     let (first, last) = (at(residual, 2 * from), at(residual, 2 * to - 1));
     add(from.wrapping_sub(1), y / 2, beside * first);
     add(to, y / 2, beside * last);

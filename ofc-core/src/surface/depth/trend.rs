@@ -1,6 +1,6 @@
 //! The paraboloid that fits the slopes best, taken out before the equations are solved and put back in f64 afterwards.
 //!
-//! Depths run to hundreds of pixels while the equations are about differences of neighbours; what is left without the
+//! Depths run to hundreds of pixels while the equations are about differences of neighbors; what is left without the
 //! paraboloid is smaller, and a surface that is one comes out exact whatever the tolerance is.
 
 use super::grid::Grid;
