@@ -3,7 +3,7 @@
 
 # Packages that building the examples needs.
 # shellcheck disable=SC2034
-example_packages=(cmake g++ gcc libcli11-dev libopencv-core-dev libopencv-imgcodecs-dev libopencv-imgproc-dev nlohmann-json3-dev)
+example_packages=(cmake g++ gcc gnuplot-nox libcli11-dev libopencv-core-dev libopencv-imgcodecs-dev libopencv-imgproc-dev nlohmann-json3-dev)
 # What the tests need beyond those.
 # shellcheck disable=SC2034
 test_packages=(assimp-utils binutils libcmocka-dev python3 shellcheck)

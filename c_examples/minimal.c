@@ -1,7 +1,7 @@
 /*
  * The smallest complete use of ofc: C99, no library but ofc, static buffers, no malloc.
  *
- * Renders a matte ball under three coloured lights into an RGB picture, forgets the lights, recovers them and the
+ * Renders a matte ball under three colored lights into an RGB picture, forgets the lights, recovers them and the
  * normals from the picture, and prints both beside the truth.
  *
  *     cc -std=c99 -Iinclude c_examples/minimal.c libofc.a -lm -Wl,--gc-sections

@@ -7,7 +7,6 @@
 #include "common/picture.hpp"
 #include "common/surface_view.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -16,7 +15,7 @@
 namespace {
 
 struct Options {
-    std::string normals, mask, known, out = "out";
+    std::string normals, mask, known, out;
     bool y_down = false;
     DepthOptions depth;
     double tolerance = 0; // 0 where not given
@@ -25,24 +24,20 @@ struct Options {
 Options parse(int argc, char **argv)
 {
     Options options;
-    CLI::App app("Integrates a normal map into depth.\n"
-                 "NORMALS is a TIFF of 3 x float32 (x right, y up, z toward the camera; zero or NaN where there is none), or\n"
-                 "an 8- or 16-bit picture with (n + 1) / 2 of full scale in r, g, b for x, y, z, black where there is none.",
-                 "ofc_integrate");
-    app.set_version_flag("--version", ofc_version_string());
-    app.add_option("NORMALS", options.normals, "The normal map (TIFF or PNG)")->required();
-    app.add_option("--mask", options.mask, "Gray picture, 0 where no depth is wanted")->type_name("MASK.png");
-    app.add_option("--known", options.known, "Known depths: TIFF of float32, NaN where unknown")->type_name("DEPTH.tiff");
-    app.add_flag("--y-down", options.y_down, "The map's y points down (as in DirectX)");
-    options.depth.add_to(app);
-    app.add_option("--tolerance", options.tolerance, "Relative residual to reach (default 1e-4)")
-        ->check(CLI::Range(1e-6, 1.0));
-    app.add_option("--out", options.out, "Folder for the results (default: out)")->type_name("DIR");
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError &error) {
-        std::exit(app.exit(error) == 0 ? 0 : 2);
-    }
+    CommandLine line("ofc_integrate",
+                     "Integrates a normal map into depth.\n"
+                     "NORMALS is a TIFF of 3 x float32 (x right, y up, z toward the camera; zero or NaN where there is none), or\n"
+                     "an 8- or 16-bit picture with (n + 1) / 2 of full scale in r, g, b for x, y, z, black where there is none.");
+    line.add_option("NORMALS", options.normals, "The normal map (TIFF or PNG)")->required();
+    line.add_option("--mask", options.mask, "Gray picture, 0 where no depth is wanted")->type_name("MASK.png");
+    line.add_option("--known", options.known, "Known depths: TIFF of float32, NaN where unknown")->type_name("DEPTH.tiff");
+    line.add_flag("--y-down", options.y_down, "The map's y points down (as in DirectX)");
+    options.depth.add_to(line);
+    line.add_option("--tolerance", options.tolerance, "Relative residual to reach (default: 1e-4)")
+        ->check(CLI::Range(1e-6, 1.0))
+        ->type_name("T");
+    line.parse_or_exit(argc, argv);
+    options.out = line.out;
     return options;
 }
 
@@ -77,7 +72,7 @@ int run(const Options &options)
     write_image(out / "mesh.png", mesh_picture(surface, {960, 720}));
     write_mesh(out / "mesh.ply", surface, normal_map(normals));
     nlohmann::json report = options.depth.report(surface);
-    const std::optional<double> bent = median_angle_deg(normals_of(surface), normals);
+    const std::optional<double> bent = median_angle_deg(normals_of(surface.view()), normals);
     if (bent)
         report["median_angle_deg"] = *bent;
     write_json(out / "report.json", report);
@@ -89,7 +84,7 @@ int run(const Options &options)
                 surface.milliseconds);
     if (bent)
         std::printf("median angle between the normals given and those of the depth: %.2f degrees\n", *bent);
-    std::printf("wrote %s: look at depth.png and mesh.png\n", std::filesystem::absolute(out).lexically_normal().c_str());
+    say_where(out, "depth.png and mesh.png");
     return 0;
 }
 

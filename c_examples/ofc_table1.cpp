@@ -1,40 +1,38 @@
-// The paper's section 4 on any range map: Table 1, the median errors, and Figures 3 to 5.
+// The paper's section 4 on any range map: Table 1, the median errors, and the figures.
 
 #include "common/draw.hpp"
 #include "table1/figures.hpp"
+#include "table1/slopes.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace {
 
 struct Options {
-    std::string depth, out = "out";
-    double noise = 1, pixel_pitch = 1;
-    std::uint64_t seed = 0;
+    std::string depth, out;
+    double pixel_pitch = 1;
+    ExperimentParams experiment;
 };
 
 Options parse(int argc, char **argv)
 {
     Options options;
-    CLI::App app("The paper's experiment of section 4: a range map is rendered under three colored lights, and what orientation\n"
-                 "from color and other methods make of the picture is compared with the truth.\n"
-                 "Without DEPTH it takes a bust of its own.",
-                 "ofc_table1");
-    app.set_version_flag("--version", ofc_version_string());
-    app.add_option("DEPTH", options.depth, "Range map: gray PNG of 16 bits (0 is nothing) or TIFF of float32 (NaN is nothing)");
-    app.add_option("--pixel-pitch", options.pixel_pitch, "Width of a pixel in the unit of DEPTH (default 1)")
-        ->check(CLI::Range(1e-9, 1e9));
-    app.add_option("--noise", options.noise, "Standard deviation of the noise in gray levels (default 1)")
-        ->check(CLI::Range(0.0, 255.0));
-    app.add_option("--seed", options.seed, "Seed of noise, subsets and annealing (default 0)");
-    app.add_option("--out", options.out, "Folder for the results (default: out)")->type_name("DIR");
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError &error) {
-        std::exit(app.exit(error) == 0 ? 0 : 2);
-    }
+    CommandLine line("ofc_table1",
+                     "The experiment of the paper's section 4: a range map is rendered under three colored lights, and the normals\n"
+                     "that the direct method and other methods find in the picture are compared with the truth.\n"
+                     "Without DEPTH it takes a bust of its own.");
+    line.add_option("DEPTH", options.depth,
+                    "Range map, larger is nearer: gray PNG of 16 bits, 0 where there is nothing, or TIFF of float32, NaN where\n"
+                    "there is nothing");
+    line.add_pixel_pitch(options.pixel_pitch, "Width of a pixel in the unit of DEPTH (default: 1)", "P");
+    line.add_option("--noise", options.experiment.noise, "Standard deviation of the noise in gray levels (default: 1)")
+        ->check(CLI::Range(0.0, 255.0))
+        ->type_name("LEVELS");
+    line.add_seed(options.experiment.seed, "noise, subsets and annealing");
+    options.experiment.shadows.add_to(line);
+    line.parse_or_exit(argc, argv);
+    options.out = line.out;
     return options;
 }
 
@@ -55,13 +53,18 @@ nlohmann::json report(const Options &options, const Experiment &e)
     nlohmann::json report = {{"status", ofc_status_message(e.status)},
                              {"status_code", e.status},
                              {"version", ofc_version_string()},
-                             {"noise", options.noise},
-                             {"seed", options.seed}};
+                             {"noise", options.experiment.noise},
+                             {"seed", options.experiment.seed},
+                             {"shadows", {{"asked", options.experiment.shadows.choice}, {"direct", e.shadows}}},
+                             {"example", example_report()}};
     if (!e.solved())
         return report;
+    report["shadows"]["joint"] = e.joint_shadows;
     report["r_squared"] = e.solution.fit.r_squared;
+    report["usable"] = e.solution.pixel_counts.usable;
     report["inliers"] = e.solution.inlier_count;
     report["candidates"] = e.solution.candidate_count;
+    report["correlation"] = e.correlation;
     report["table"] = e.table.json();
     if (!e.branch.empty())
         report["branch"] = {{"solution_slant_deg", degrees(e.solution.slant_rad[0])},
@@ -74,37 +77,46 @@ nlohmann::json report(const Options &options, const Experiment &e)
     return report;
 }
 
+std::vector<Line> summary(const Experiment &e)
+{
+    std::vector<Line> lines = {{"shadows", "direct method: " + e.shadows}};
+    if (!e.solved()) {
+        lines.push_back({"refused", ofc_status_message(e.status)});
+        return lines;
+    }
+    lines.push_back({"", "joint method: " + e.joint_shadows});
+    lines.push_back({"median", "angular error in degrees, over the " + std::to_string(e.solution.inlier_count) +
+                                   " inliers of the direct method"});
+    for (const Answer &answer : e.answers)
+        lines.push_back({short_text_of(answer), answer.name + (answer.median_deg ? "" : ": " + answer.refusal)});
+    return lines;
+}
+
 int run(const Options &options)
 {
     const Relief relief = options.depth.empty() ? bust() : read_relief(options.depth, options.pixel_pitch);
-    const Experiment e = run_experiment(relief, options.noise, options.seed);
+    require_usable_slopes(relief, options.depth);
+    const Experiment e = run_experiment(relief, options.experiment);
     const std::filesystem::path out = options.out;
     make_folder(out);
     write_json(out / "table1.json", report(options, e));
-    Sheet sheet;
-    for (const Figure &figure : figures(relief, e)) {
-        write_image(out / figure.file, figure.image);
-        sheet.add(figure.title, figure.image);
-    }
-    std::vector<Line> lines;
-    if (e.solved())
-        lines.push_back({"median", "angular error over " + std::to_string(e.solution.inlier_count) + " inliers, degrees"});
-    for (const Answer &answer : e.answers)
-        lines.push_back({short_text_of(answer), answer.name + (answer.median_deg ? "" : ": " + answer.refusal)});
-    if (!e.solved())
-        lines.push_back({"refused", ofc_status_message(e.status)});
-    write_image(out / "overview.png", sheet.draw(lines));
-
     if (e.solved()) {
         e.table.print();
-        std::printf("\nmedian angular error over %d inliers (robust R^2 %.4f)\n", e.solution.inlier_count,
-                    e.solution.fit.r_squared);
+        std::printf("\nrobust R² %.4f; shadows by the direct method: %s\n", e.solution.fit.r_squared, e.shadows.c_str());
+        std::printf("shadows by the joint method: %s\n", e.joint_shadows.c_str());
+        std::printf("median angular error over the %d inliers of the direct method\n", e.solution.inlier_count);
         for (const Answer &answer : e.answers)
             std::printf("  %-36s %s\n", answer.name.c_str(), text_of(answer).c_str());
     } else {
         std::fprintf(stderr, "ofc_table1: %s\n", ofc_status_message(e.status));
     }
-    std::printf("wrote %s: look at overview.png\n", std::filesystem::absolute(out).lexically_normal().c_str());
+    Sheet sheet(4);
+    for (const Figure &figure : figures(relief, e)) {
+        write_image(out / figure.file, figure.image);
+        sheet.add(figure.title, figure.image, figure.span);
+    }
+    write_image(out / "overview.png", sheet.draw(summary(e)));
+    say_where(out, "overview.png");
     return e.solved() ? 0 : 1;
 }
 

@@ -2,18 +2,15 @@
 
 #include "common/draw.hpp"
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-void DepthOptions::add_to(CLI::App &app)
+void DepthOptions::add_to(CommandLine &line)
 {
-    app.add_option("--integrate", method,
-                   "How to span pixels without a normal: poisson leaves them out, paper sets them flat, coupled bridges\n"
-                   "them smoothly (default: poisson)")
+    line.add_option("--integrate", method,
+                    "How to span pixels without a normal: poisson leaves them out, paper sets them flat, coupled bridges\n"
+                    "them smoothly (default: poisson)")
         ->check(CLI::IsMember({"poisson", "paper", "coupled"}));
-    app.add_option("--pixel-pitch", pixel_pitch, "Width of a pixel on the surface in millimetres (default: depth in pixels)")
-        ->check(CLI::Range(1e-9, 1e9))
-        ->type_name("MM");
+    line.add_pixel_pitch(pixel_pitch, "Width of a pixel on the surface in millimeters (default: depth in pixels)", "MM");
 }
 
 ofc_depth_params DepthOptions::params() const

@@ -1,21 +1,55 @@
 #include "common/draw.hpp"
 
+#include "common/gnuplot.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <opencv2/imgproc.hpp>
 
 namespace {
 
-constexpr uchar sheet_gray = 244;
-const cv::Scalar sheet_color(sheet_gray, sheet_gray, sheet_gray);
+// The multiples of a step within a range; at most a hundred.
+std::vector<double> ticks(cv::Vec2d range, double step)
+{
+    constexpr int most = 100;
+    const double first = std::ceil(range[0] / step - 1e-9);
+    std::vector<double> values;
+    for (int i = 0; i < most && (first + i) * step <= range[1] + 1e-9 * step; i++)
+        values.push_back((first + i) * step);
+    return values;
+}
+
+// A label command in gnuplot's language.
+std::string label(const Text &text, cv::Size size)
+{
+    static const char *const align[] = {"left", "center", "right"};
+    char place[160];
+    std::snprintf(place, sizeof place, " at screen %.6f,%.6f %s font 'DejaVu Sans%s,%g' textcolor rgb '#%02x%02x%02x'",
+                  static_cast<double>(text.at.x) / size.width, 1 - static_cast<double>(text.at.y) / size.height,
+                  align[static_cast<int>(text.align)], text.fixed_width ? " Mono" : "", text.points,
+                  static_cast<unsigned>(text.color[2]), static_cast<unsigned>(text.color[1]),
+                  static_cast<unsigned>(text.color[0]));
+    return "set label " + Gnuplot::quoted(text.text) + place + " noenhanced";
+}
 
 } // namespace
 
-void put_text(cv::Mat &image, const std::string &text, cv::Point at, double scale, cv::Scalar color)
+void typeset(cv::Mat &image, const std::vector<Text> &texts)
 {
-    cv::putText(image, text, at, font, scale, color, 1, cv::LINE_AA);
+    Gnuplot layer(image.size(), Gnuplot::Background::transparent);
+    layer("unset border; unset tics; unset key");
+    for (const Text &text : texts)
+        layer(label(text, image.size()));
+    layer("plot [0:1] [0:1] 2"); // nothing, for labels need a plot
+    const cv::Mat letters = layer.draw();
+    for (int y = 0; y < image.rows; y++)
+        for (int x = 0; x < image.cols; x++) {
+            const cv::Vec4b letter = letters.at<cv::Vec4b>(y, x);
+            cv::Vec3b &pixel = image.at<cv::Vec3b>(y, x);
+            for (int c = 0; c < 3; c++)
+                pixel[c] = static_cast<uchar>((letter[3] * letter[c] + (255 - letter[3]) * pixel[c] + 127) / 255);
+        }
 }
 
 std::string number(double value, double step)
@@ -35,48 +69,13 @@ double round_step(double range, int count)
     return 10 * power;
 }
 
-std::vector<double> ticks(cv::Vec2d range, double step)
-{
-    constexpr int most = 100;
-    const double first = std::ceil(range[0] / step - 1e-9);
-    std::vector<double> values;
-    for (int i = 0; i < most && (first + i) * step <= range[1] + 1e-9 * step; i++)
-        values.push_back((first + i) * step);
-    return values;
-}
-
-cv::Point Axes::at(double x_value, double y_value) const
-{
-    return {cvRound(area.x + area.width * (x_value - x[0]) / (x[1] - x[0])),
-            cvRound(area.y + area.height * (y[1] - y_value) / (y[1] - y[0]))};
-}
-
-void Axes::draw(cv::Mat &plot, double x_step, double y_step) const
-{
-    for (const double tick : ticks(x, x_step)) {
-        cv::line(plot, at(tick, y[0]), at(tick, y[1]), faint, 1);
-        const std::string label = number(tick, x_step);
-        const int width = cv::getTextSize(label, font, 0.42, 1, nullptr).width;
-        put_text(plot, label, at(tick, y[0]) + cv::Point(-width / 2, 18), 0.42, ink);
-    }
-    for (const double tick : ticks(y, y_step)) {
-        cv::line(plot, at(x[0], tick), at(x[1], tick), faint, 1);
-        const std::string label = number(tick, y_step);
-        const int width = cv::getTextSize(label, font, 0.42, 1, nullptr).width;
-        put_text(plot, label, at(x[0], tick) + cv::Point(-width - 6, 5), 0.42, ink);
-    }
-    cv::rectangle(plot, area, ink, 1, cv::LINE_AA);
-    put_text(plot, x_label, area.br() + cv::Point(-130, 36), 0.45, ink);
-    put_text(plot, y_label, area.tl() + cv::Point(-28, -10), 0.45, ink);
-}
-
 cv::Vec2d range_of(const cv::Mat &values)
 {
     cv::Vec2d range(HUGE_VAL, -HUGE_VAL);
     for (auto value = values.begin<float>(); value != values.end<float>(); ++value)
         if (std::isfinite(*value))
             range = {std::min<double>(range[0], *value), std::max<double>(range[1], *value)};
-    return range;
+    return range[0] <= range[1] ? range : cv::Vec2d(0, 1);
 }
 
 cv::Mat colors_of(const cv::Mat &values, cv::Vec2d range)
@@ -99,8 +98,6 @@ cv::Mat colors_of(const cv::Mat &values, cv::Vec2d range)
 
 cv::Mat color_picture(const cv::Mat &values, cv::Vec2d range, const std::string &title)
 {
-    if (range[0] > range[1])
-        range = {0, 1}; // there are no values
     // Values that are all alike lie in the middle of a range that can be told apart on the bar.
     if (const double least = 1e-6 * std::max(std::abs(range[0]), 1.0); range[1] - range[0] < least)
         range += cv::Vec2d(-least, least);
@@ -109,8 +106,8 @@ cv::Mat color_picture(const cv::Mat &values, cv::Vec2d range, const std::string 
     // Small pictures are enlarged so that the text beside them is not larger than they are.
     const int factor = std::max(1, cvRound(400.0 / std::max({1, map.rows, map.cols})));
     cv::resize(map, map, cv::Size(), factor, factor, cv::INTER_NEAREST);
-    constexpr int margin = 16, bar_width = 18, text_width = 84, title_height = 30;
-    const int title_width = cv::getTextSize(title, font, 0.45, 1, nullptr).width;
+    constexpr int margin = 16, bar_width = 18, text_width = 84, title_height = 34, letter_width = 8;
+    const int title_width = static_cast<int>(title.size()) * letter_width;
     const cv::Size size(std::max(map.cols + 3 * margin + bar_width + text_width, title_width + 2 * margin),
                         std::max(map.rows, 120) + title_height + margin);
     cv::Mat sheet(size, CV_8UC3, sheet_color);
@@ -122,55 +119,71 @@ cv::Mat color_picture(const cv::Mat &values, cv::Vec2d range, const std::string 
     cv::applyColorMap(cv::repeat(ramp, 1, bar.width), colors, cv::COLORMAP_VIRIDIS);
     colors.copyTo(sheet(bar));
     cv::rectangle(sheet, bar, ink, 1);
-    put_text(sheet, title, {margin, 20}, 0.45, ink);
+    std::vector<Text> texts = {{title, {margin, title_height / 2}, 10}};
     const double step = round_step(extent, 5);
     for (const double value : ticks(range, step)) {
         const int y = bar.y + cvRound((bar.height - 1) * (1 - (value - range[0]) / extent));
         cv::line(sheet, {bar.x + bar.width, y}, {bar.x + bar.width + 5, y}, ink, 1);
-        put_text(sheet, number(value, step), {bar.x + bar.width + 10, y + 5}, 0.42, ink);
+        texts.push_back({number(value, step), {bar.x + bar.width + 10, y}});
     }
+    typeset(sheet, texts);
     return sheet;
 }
 
-void Sheet::add(const std::string &title, const cv::Mat &image)
+void Sheet::add(const std::string &title, const cv::Mat &image, int span)
 {
     cv::Mat bgr = image;
     if (image.channels() == 1)
         cv::cvtColor(image, bgr, cv::COLOR_GRAY2BGR);
-    const double scale = std::min(panel.width / double(image.cols), panel.height / double(image.rows));
+    const cv::Size most = panel(span);
+    const double scale = std::min(most.width / double(image.cols), most.height / double(image.rows));
     const cv::Size size(std::max(1, cvRound(image.cols * scale)), std::max(1, cvRound(image.rows * scale)));
     cv::resize(bgr, bgr, size, 0, 0, scale < 1 ? cv::INTER_AREA : scale > 3 ? cv::INTER_NEAREST : cv::INTER_LINEAR);
-    // Pictures with a margin of their own go on in it.
-    const bool has_margin = bgr.at<cv::Vec3b>(0, 0) == cv::Vec3b(sheet_gray, sheet_gray, sheet_gray);
-    cv::Mat framed(panel, CV_8UC3, has_margin ? sheet_color : dark);
-    bgr.copyTo(framed(cv::Rect((panel.width - size.width) / 2, (panel.height - size.height) / 2, size.width, size.height)));
-    panels.emplace_back(title, framed);
+    // A picture with a margin of its own goes on in it, and plots are on white.
+    const cv::Vec3b corner = bgr.at<cv::Vec3b>(0, 0);
+    const bool has_margin = corner == cv::Vec3b(244, 244, 244) || corner == cv::Vec3b(255, 255, 255);
+    cv::Mat framed(most, CV_8UC3, has_margin ? cv::Scalar(corner) : dark);
+    bgr.copyTo(framed(cv::Rect((most.width - size.width) / 2, (most.height - size.height) / 2, size.width, size.height)));
+    panels.push_back({title, "", framed, span});
 }
 
 void Sheet::add(const std::string &title, const std::string &message)
 {
-    cv::Mat image(panel, CV_8UC3, dark);
-    put_text(image, message, {20, panel.height / 2}, 0.55, cv::Scalar(200, 200, 200));
-    panels.emplace_back(title, image);
+    panels.push_back({title, message, cv::Mat(panel(), CV_8UC3, dark), 1});
 }
 
 cv::Mat Sheet::draw(const std::vector<Line> &lines) const
 {
-    constexpr int margin = 20, title_height = 34, line_height = 24, label_width = 110;
-    const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
-    const int row_height = title_height + panel.height + margin;
-    cv::Mat sheet(rows * row_height + margin * 2 + static_cast<int>(lines.size()) * line_height,
-                  columns * (panel.width + margin) + margin, CV_8UC3, sheet_color);
-    for (int i = 0; i < static_cast<int>(panels.size()); i++) {
-        const cv::Point corner(margin + (i % columns) * (panel.width + margin), (i / columns) * row_height + title_height);
-        put_text(sheet, panels[i].first, corner + cv::Point(0, -10), 0.6, ink);
-        panels[i].second.copyTo(sheet(cv::Rect(corner, panel)));
+    constexpr int title_height = 36, line_height = 24, label_width = 110, row_height = title_height + panel_height + gap;
+    constexpr int text_width = 1400; // a long line of text takes this much
+    // Where each panel stands: its column and row.
+    std::vector<cv::Point> places;
+    cv::Point next(0, 0);
+    for (const Panel &panel : panels) {
+        if (next.x + panel.span > columns)
+            next = {0, next.y + 1};
+        places.push_back(next);
+        next.x += panel.span;
     }
-    int y = rows * row_height + margin + 10;
+    const int rows = next.y + 1;
+    cv::Mat sheet(rows * row_height + gap * 2 + static_cast<int>(lines.size()) * line_height,
+                  std::max(columns * (panel_width + gap) + gap, text_width), CV_8UC3, sheet_color);
+    std::vector<Text> texts;
+    for (std::size_t i = 0; i < panels.size(); i++) {
+        const cv::Point corner(gap + places[i].x * (panel_width + gap), places[i].y * row_height + title_height);
+        const cv::Mat &image = panels[i].image;
+        image.copyTo(sheet(cv::Rect(corner, image.size())));
+        texts.push_back({panels[i].title, corner + cv::Point(0, -title_height / 2 + 2), 12});
+        if (!panels[i].message.empty())
+            texts.push_back({panels[i].message, corner + cv::Point(image.cols / 2, image.rows / 2), 11,
+                             cv::Scalar(200, 200, 200), Text::Align::center});
+    }
+    int y = rows * row_height + gap;
     for (const Line &line : lines) {
-        put_text(sheet, line.label, {margin, y}, 0.55, ink);
-        put_text(sheet, line.text, {margin + label_width, y}, 0.55, ink);
+        texts.push_back({line.label, {gap, y}, 11, ink, Text::Align::left, true});
+        texts.push_back({line.text, {gap + label_width, y}, 11, ink, Text::Align::left, true});
         y += line_height;
     }
+    typeset(sheet, texts);
     return sheet;
 }

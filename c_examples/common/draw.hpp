@@ -3,14 +3,25 @@
 
 #include <opencv2/core.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
-constexpr int font = 0; // cv::FONT_HERSHEY_SIMPLEX
-const cv::Scalar white(255, 255, 255), ink(40, 40, 40), dark(30, 30, 30), faint(222, 222, 222);
+// Colors are BGR.
+const cv::Scalar white(255, 255, 255), ink(40, 40, 40), dark(30, 30, 30), sheet_color(244, 244, 244);
 
-// Text with its baseline at `at`.
-void put_text(cv::Mat &image, const std::string &text, cv::Point at, double scale, cv::Scalar color);
+// A text on a picture.
+struct Text {
+    enum class Align { left, center, right };
+
+    std::string text;
+    cv::Point at; // the left end, middle or right end, halfway up the line
+    double points = 9;
+    cv::Scalar color = ink;
+    Align align = Align::left;
+    bool fixed_width = false;
+};
+
+// Writes texts onto a picture (CV_8UC3).
+void typeset(cv::Mat &image, const std::vector<Text> &texts);
 
 // A number with as many digits as steps of this size need.
 std::string number(double value, double step);
@@ -18,26 +29,13 @@ std::string number(double value, double step);
 // 1, 2 or 5 times a power of ten: about `count` steps in the range.
 double round_step(double range, int count);
 
-// The multiples of a step within a range; at most a hundred.
-std::vector<double> ticks(cv::Vec2d range, double step);
-
-// A plot's axes with their ticks.
-struct Axes {
-    cv::Rect area;
-    cv::Vec2d x, y; // least and largest value
-    std::string x_label, y_label;
-
-    cv::Point at(double x_value, double y_value) const;
-    void draw(cv::Mat &plot, double x_step, double y_step) const;
-};
-
 // Values (CV_32F, NaN is none) in the colors of cv::COLORMAP_VIRIDIS from `range[0]` to `range[1]`, dark where there is none.
 cv::Mat colors_of(const cv::Mat &values, cv::Vec2d range);
 
-// The same under a title and beside a bar that says which color is which value.
+// The colors of values under a title and beside a bar that says which color is which value.
 cv::Mat color_picture(const cv::Mat &values, cv::Vec2d range, const std::string &title);
 
-// Least and largest finite value.
+// Least and largest finite value; {0, 1} where there is none.
 cv::Vec2d range_of(const cv::Mat &values);
 
 // A line of text with a short label before it.
@@ -46,14 +44,27 @@ struct Line {
 };
 
 // Panels with titles, left to right and top to bottom, and lines of text below them.
-struct Sheet {
-    cv::Size panel{520, 440};
-    int columns = 3;
-    std::vector<std::pair<std::string, cv::Mat>> panels;
+class Sheet {
+  public:
+    static constexpr int panel_width = 520, panel_height = 440, gap = 20;
 
-    // Adds an image in the middle of a dark panel, as large as it fits.
-    void add(const std::string &title, const cv::Mat &image);
+    explicit Sheet(int columns) : columns(columns) {}
+
+    // The size of a panel that is so many columns wide.
+    static cv::Size panel(int span = 1) { return {span * panel_width + (span - 1) * gap, panel_height}; }
+
+    // Adds an image in the middle of a panel, as large as it fits.
+    void add(const std::string &title, const cv::Mat &image, int span = 1);
     // Adds a text in place of an image.
     void add(const std::string &title, const std::string &message);
     cv::Mat draw(const std::vector<Line> &lines) const;
+
+  private:
+    struct Panel {
+        std::string title, message;
+        cv::Mat image;
+        int span = 1;
+    };
+    int columns;
+    std::vector<Panel> panels;
 };

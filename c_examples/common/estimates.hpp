@@ -8,6 +8,11 @@
 
 using Triple = std::array<double, 3>;
 
+inline Triple triple(const double *values)
+{
+    return {values[0], values[1], values[2]};
+}
+
 // What the estimators of single channels say of a picture; radians, NaN where they refuse.
 struct Estimates {
     Triple pentland_tilts, pentland_slants, lee_rosenfeld_slants, zheng_chellappa_slants, channel_maxima;

@@ -25,6 +25,11 @@ void make_folder(const std::filesystem::path &folder)
         throw UsageError("cannot make the folder " + folder.string() + ": " + failure.message());
 }
 
+void say_where(const std::filesystem::path &folder, const char *first)
+{
+    std::printf("wrote %s: look at %s\n", std::filesystem::absolute(folder).lexically_normal().c_str(), first);
+}
+
 void write_json(const std::filesystem::path &path, const nlohmann::json &report)
 {
     std::ofstream file(path);

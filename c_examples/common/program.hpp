@@ -17,4 +17,7 @@ int guarded(const char *program, const std::function<int()> &body);
 // Makes the folder for the results, or throws UsageError.
 void make_folder(const std::filesystem::path &folder);
 
+// Tells the user where the results are, and which of them to look at first.
+void say_where(const std::filesystem::path &folder, const char *first);
+
 void write_json(const std::filesystem::path &path, const nlohmann::json &report);

@@ -62,19 +62,6 @@ double bust_height(double u, double v)
 
 } // namespace
 
-ofc_depth_map Relief::view() const
-{
-    ofc_depth_map map = {};
-    map.depth = depth.ptr<float>();
-    map.width = depth.cols;
-    map.height = depth.rows;
-    map.row_stride_bytes = depth.step;
-    map.pixel_pitch = pixel_pitch;
-    map.mask = mask.data;
-    map.mask_stride_bytes = mask.step;
-    return map;
-}
-
 Relief bust()
 {
     const cv::Size size(420, 440);

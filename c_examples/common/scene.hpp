@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/picture.hpp"
+#include "common/surface.hpp"
 
 #include <array>
 
@@ -10,7 +11,7 @@ struct Relief {
     cv::Mat mask;           // CV_8U, 255 on the surface
     double pixel_pitch = 1; // in the unit of depth
 
-    ofc_depth_map view() const;
+    ofc_depth_map view() const { return depth_map_of(depth, pixel_pitch, mask); }
 };
 
 // The programs' own surface: a bust, depth in pixels.

@@ -1,20 +1,23 @@
 #include "common/surface.hpp"
 
 #include "common/picture.hpp"
+#include "common/workspace.hpp"
 
 #include <chrono>
 #include <cmath>
 #include <fstream>
 #include <limits>
 
-ofc_depth_map Surface::view() const
+ofc_depth_map depth_map_of(const cv::Mat &depth, double pixel_pitch, const cv::Mat &mask)
 {
     ofc_depth_map map = {};
     map.depth = depth.ptr<float>();
     map.width = depth.cols;
     map.height = depth.rows;
     map.row_stride_bytes = depth.step;
-    map.pixel_pitch = params.pixel_pitch;
+    map.pixel_pitch = pixel_pitch;
+    map.mask = mask.data;
+    map.mask_stride_bytes = mask.empty() ? 0 : mask.step[0];
     return map;
 }
 
@@ -32,20 +35,18 @@ Surface integrate(const cv::Mat &normals, const cv::Mat &mask, const ofc_depth_p
     Surface surface;
     surface.params = params;
     surface.depth = cv::Mat(normals.size(), CV_32F, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
-    const std::size_t bytes = ofc_depth_workspace_size(input.width, input.height);
-    std::vector<std::uint64_t> workspace(bytes / sizeof(std::uint64_t) + 1);
+    Workspace workspace(ofc_depth_workspace_size(input.width, input.height));
     const auto start = std::chrono::steady_clock::now();
-    surface.status = ofc_depth_integrate(&input, &params, workspace.data(), bytes, surface.depth.ptr<float>(),
+    surface.status = ofc_depth_integrate(&input, &params, workspace.data(), workspace.bytes(), surface.depth.ptr<float>(),
                                          surface.depth.step, &surface.result);
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     surface.milliseconds = elapsed.count();
     return surface;
 }
 
-cv::Mat normals_of(const Surface &surface)
+cv::Mat normals_of(const ofc_depth_map &map)
 {
-    cv::Mat normals = cv::Mat::zeros(surface.depth.size(), CV_32FC3);
-    const ofc_depth_map map = surface.view();
+    cv::Mat normals = cv::Mat::zeros(map.height, map.width, CV_32FC3);
     ofc_depth_normals(&map, normals.ptr<float>(), normals.step);
     return normals;
 }
@@ -53,7 +54,7 @@ cv::Mat normals_of(const Surface &surface)
 void write_mesh(const std::string &path, const Surface &surface, const cv::Mat &bgr)
 {
     const cv::Mat &depth = surface.depth;
-    const cv::Mat normals = normals_of(surface);
+    const cv::Mat normals = normals_of(surface.view());
     const double pitch = surface.params.pixel_pitch;
     cv::Mat index(depth.size(), CV_32S, cv::Scalar(-1));
     std::vector<cv::Point> pixels;

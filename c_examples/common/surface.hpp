@@ -5,6 +5,9 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+// The view of a depth map (CV_32F) that ofc takes; a mask (CV_8U) may be empty. Valid for as long as both are.
+ofc_depth_map depth_map_of(const cv::Mat &depth, double pixel_pitch, const cv::Mat &mask = cv::Mat());
+
 struct Surface {
     ofc_status status = OFC_STATUS_OK;
     ofc_depth_params params = {};
@@ -13,8 +16,7 @@ struct Surface {
     double milliseconds = 0;
 
     bool integrated() const { return status == OFC_STATUS_OK || status == OFC_STATUS_NOT_CONVERGED; }
-    // The view of it that ofc_check() takes; valid for as long as this is.
-    ofc_depth_map view() const;
+    ofc_depth_map view() const { return depth_map_of(depth, params.pixel_pitch); }
 };
 
 // Integrates normals (CV_32FC3 x, y, z, zero where there is none) over the mask (CV_8U, or empty for all of them).
@@ -26,5 +28,5 @@ Surface integrate(const cv::Mat &normals, const cv::Mat &mask, const ofc_depth_p
 // of depth; normals of the surface, and the colors of a BGR picture of the same size.
 void write_mesh(const std::string &path, const Surface &surface, const cv::Mat &bgr);
 
-// Unit normals of the depth map itself, zero where it has no depth. CV_32FC3.
-cv::Mat normals_of(const Surface &surface);
+// Unit normals of a depth map itself, zero where it has no depth. CV_32FC3.
+cv::Mat normals_of(const ofc_depth_map &map);

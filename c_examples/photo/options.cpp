@@ -1,47 +1,63 @@
 #include "photo/options.hpp"
 
-#include <CLI/CLI.hpp>
-#include <ofc.h>
+namespace {
+
+void check_together(const Options &options)
+{
+    const bool own_scene = options.image.empty() && options.planes.empty();
+    if (own_scene && (!options.mask.empty() || !options.truth.empty() || !options.background.empty()))
+        throw CLI::RequiredError("IMAGE or --planes, to which --mask, --truth and --background belong,");
+}
+
+} // namespace
+
+ofc_solve_params Options::solve_params(ofc_orientation_method method) const
+{
+    ofc_solve_params params;
+    ofc_solve_params_default(&params);
+    params.lmeds.seed = seed;
+    params.lmeds.subsets = subsets;
+    params.lmeds.method = fit == "squares" ? OFC_FIT_LEAST_SQUARES : OFC_FIT_LEAST_MEDIAN;
+    params.orientation_method = method;
+    return params;
+}
 
 Options parse_options(int argc, char **argv)
 {
     Options options;
-    CLI::App app("Surface normals from one color picture of a matte, uniformly colored object under colored lights.\n"
-                 "Without IMAGE it renders a scene of its own and compares with the truth.",
-                 "ofc_photo");
-    app.set_version_flag("--version", ofc_version_string());
-    auto *image = app.add_option("IMAGE", options.image, "Color picture of 8 or 16 bits a channel (PNG, TIFF, ...)");
-    app.add_option("--planes", options.planes, "Three grayscale pictures, one a light, instead of IMAGE")
+    CommandLine line("ofc_photo",
+                     "Surface normals from one color picture of a matte, uniformly colored object under colored lights.\n"
+                     "Without IMAGE it renders a scene of its own and compares with the truth.");
+    auto *image = line.add_option("IMAGE", options.image, "Color picture of 8 or 16 bits a channel (PNG, TIFF, ...)");
+    line.add_option("--planes", options.planes, "Three grayscale pictures, each under one light, instead of IMAGE")
         ->expected(3)
         ->type_name("R.png G.png B.png")
         ->excludes(image);
-    app.add_option("--mask", options.mask, "Gray picture, 0 where pixels are to be left out")->type_name("MASK.png");
-    app.add_option("--background", options.background, "The same flat surface without the object: divides by it (near lights)")
+    line.add_option("--mask", options.mask, "Gray picture, 0 where pixels are to be left out")->type_name("MASK.png");
+    line.add_option("--background", options.background,
+                    "Picture of the same flat surface without the object, to divide by: for near lights")
         ->type_name("BG.png");
-    app.add_option("--seed", options.seed, "Seed of the random subsets (default 0)");
-    app.add_option("--subsets", options.subsets, "Random subsets to draw (default: as many as needed)")
-        ->check(CLI::Range(1, 10000000));
-    app.add_option("--truth", options.truth, "True normals to compare with: TIFF of 3 x float32, x right, y up, z out")
+    line.add_option("--truth", options.truth, "True normals to compare with: TIFF of 3 x float32, x right, y up, z out")
         ->type_name("NORMALS.tiff");
-    std::string fit = "median", report = "short", orientation = "joint";
-    app.add_option("--orientation", orientation, "How F is oriented: by the joint method, or by the direct method of the paper (default: joint)")
-        ->check(CLI::IsMember({"joint", "direct"}));
-    app.add_option("--fit", fit, "How C is fitted: least median of squares, or least squares over every pixel (default: median)")
+    line.add_seed(options.seed, "the random subsets");
+    line.add_option("--subsets", options.subsets, "Random subsets to draw (default: as many as needed)")
+        ->check(CLI::Range(1, 10000000))
+        ->type_name("N");
+    line.add_option("--fit", options.fit,
+                    "How C is fitted: least median of squares, or least squares over every pixel (default: median)")
         ->check(CLI::IsMember({"median", "squares"}));
-    app.add_flag("--save-planes", options.save_planes, "Write the channels as three gray pictures, as --planes takes them");
-    app.add_option("--report", report, "What is printed: paper is Table 2 and section 5's checks (default: short)")
+    line.add_option("--orientation", options.orientation,
+                    "How F is oriented: joint weighs integrability and normals that point outward, direct is the paper's method,\n"
+                    "slants from tilts (default: joint)")
+        ->check(CLI::IsMember({"joint", "direct"}));
+    options.shadows.add_to(line);
+    options.depth.add_to(line);
+    line.add_option("--report", options.report,
+                    "What is printed: a summary, or Table 2 and the checks of section 5 for the paper's direct method, whose\n"
+                    "figures are then written too (default: short)")
         ->check(CLI::IsMember({"short", "paper"}));
-    options.depth.add_to(app);
-    app.add_option("--out", options.out, "Folder for the results (default: out)")->type_name("DIR");
-    try {
-        app.parse(argc, argv);
-        if (options.image.empty() && options.planes.empty() && (!options.mask.empty() || !options.truth.empty() || !options.background.empty()))
-            throw CLI::RequiredError("IMAGE or --planes, to which --mask, --truth and --background belong,");
-    } catch (const CLI::ParseError &error) {
-        std::exit(app.exit(error) == 0 ? 0 : 2);
-    }
-    options.direct_method = orientation == "direct";
-    options.least_squares = fit == "squares";
-    options.paper_report = report == "paper";
+    line.add_flag("--save-planes", options.save_planes, "Write the channels as three gray pictures, as --planes takes them");
+    line.parse_or_exit(argc, argv, [&] { check_together(options); });
+    options.out = line.out;
     return options;
 }

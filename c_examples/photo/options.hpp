@@ -4,22 +4,26 @@
 #include "common/depth_options.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 struct Options {
-    std::string image;               // empty: the program renders its own scene
-    std::vector<std::string> planes; // none, or red, green, blue
+    std::string image;                   // empty: the program renders its own scene
+    std::vector<std::string> planes;     // none, or red, green, blue
     std::string mask, truth, background; // empty where not given
-    std::optional<std::uint64_t> seed;
-    std::optional<std::uint32_t> subsets;
+    std::uint64_t seed = 0;
+    std::uint32_t subsets = 0; // as many as needed
+    std::string fit = "median", orientation = "joint", report = "short";
+    ShadowOption shadows;
     DepthOptions depth;
-    bool direct_method = false;    // slants from tilts, in place of the joint orientation
-    bool least_squares = false; // in place of least median of squares
-    bool save_planes = false;   // the channels as three gray pictures
-    bool paper_report = false;  // Table 2 and section 5's checks on the terminal
-    std::string out = "out";
+    bool save_planes = false; // the channels as three gray pictures
+    std::string out;
+
+    bool direct() const { return orientation == "direct"; }
+    bool paper_report() const { return report == "paper"; }
+
+    // How to solve with this orientation method.
+    ofc_solve_params solve_params(ofc_orientation_method method) const;
 };
 
 // Parses the command line; on --help, or with a message where it is wrong, exits with status 0 or 2.

@@ -1,6 +1,7 @@
 #include "photo/overview.hpp"
 
-#include "common/plots.hpp"
+#include "common/plot_colors.hpp"
+#include "common/plot_slants.hpp"
 #include "common/surface_view.hpp"
 
 #include <opencv2/imgproc.hpp>
@@ -39,28 +40,27 @@ cv::Mat overview(const Picture &picture, const Result &result)
 {
     const cv::Mat shown = picture.display();
     const cv::Rect part = interesting(shown);
-    Sheet sheet;
-    sheet.columns = 4;
+    Sheet sheet(4);
     const auto add = [&](const std::string &title, bool there, auto image) {
         if (there)
             sheet.add(title, image());
         else
             sheet.add(title, std::string("none: see the reason below"));
     };
-    sheet.add("input x mask", shown(part));
+    sheet.add("input × mask", shown(part));
     sheet.add("inliers (white), rejected (orange)", inlier_picture(shown, result)(part));
     add("normals: x right, y up, z out as r, g, b", result.solved(), [&] { return normal_map(result.normals)(part); });
     add("the surface relit from (1, 1, 1)", result.solved(), [&] { return shade(result.normals, {1, 1, 1})(part); });
-    // Eqs. 25 play no part where F is oriented as a whole.
-    if (!result.uncertainty.empty())
-        sheet.add("how sure each normal is", uncertainty_picture(result, part));
+    // Eqs. 25 play no part in the joint method, and the direct method does not know how sure it is.
+    if (!result.uncertainty.empty() || (!result.solved() && result.params.orientation_method == OFC_ORIENTATION_JOINT))
+        add("how sure each normal is", result.solved(), [&] { return uncertainty_picture(result, part); });
     else
         add("eqs. 25: solutions lie on the diagonal", result.solution.slant_source != OFC_SLANTS_NONE,
-            [&] { return plot_curves(result.solution, sheet.panel); });
-    sheet.add("colors and their ellipsoid", plot_colors(picture, result.solution, result.inliers, sheet.panel));
+            [&] { return plot_slants(FixedPointProblem::of(result.solution), Sheet::panel()); });
+    sheet.add("colors in pixel values, and their ellipsoid", plot_colors(picture, result.solution, result.inliers, Sheet::panel()));
     const bool integrated = result.surface.integrated() && !result.surface.depth.empty();
     const cv::Mat &depth = result.surface.depth;
     add("depth, " + std::string(result.depth.unit()), integrated, [&] { return colors_of(depth, range_of(depth))(part); });
-    add("the surface from the side", integrated, [&] { return mesh_picture(result.surface, sheet.panel); });
+    add("the surface from the side", integrated, [&] { return mesh_picture(result.surface, Sheet::panel()); });
     return sheet.draw(summary(result));
 }

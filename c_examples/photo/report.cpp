@@ -95,6 +95,12 @@ std::string text(const char *format, ...)
     return line;
 }
 
+// Whether the light of a channel shines from behind the surface, which only the joint method can find.
+bool from_behind(const ofc_solution &s, int channel)
+{
+    return (s.lights_from_behind >> channel & 1) != 0;
+}
+
 // How far to trust the result, in plain words.
 std::string trust(const Result &result)
 {
@@ -157,7 +163,7 @@ cv::Mat uncertainty_picture(const Result &result, cv::Rect part)
 {
     cv::Vec2d range(quantile(result.uncertainty, 0.01), quantile(result.uncertainty, 0.99));
     if (!(range[0] <= range[1]))
-        range = {1, 0}; // there are no values
+        range = {0, 1}; // there are no values
     return color_picture(result.uncertainty(part), range,
                          text("1 sigma of the normals, degrees (median %.2f)", quantile(result.uncertainty, 0.5)));
 }
@@ -171,7 +177,9 @@ void write_report(const std::string &path, const Result &result)
         {"version", ofc_version_string()},
         {"parameters", {{"seed", result.params.lmeds.seed},
           {"subsets", s.fit.subsets},
-          {"fit", result.params.lmeds.method == OFC_FIT_LEAST_SQUARES ? "squares" : "median"}}},
+          {"fit", result.params.lmeds.method == OFC_FIT_LEAST_SQUARES ? "squares" : "median"},
+          {"orientation", result.params.orientation_method == OFC_ORIENTATION_DIRECT ? "direct" : "joint"}}},
+        {"shadows", result.shadows},
         {"pixels",
          {{"usable", s.pixel_counts.usable},
           {"masked_out", s.pixel_counts.masked_out},
@@ -192,6 +200,7 @@ void write_report(const std::string &path, const Result &result)
         {"tilt_deg", in_degrees(s.tilts.tilt_rad)},
         {"slant_deg", in_degrees(s.slant_rad)},
         {"slant_source", source_name(s.slant_source)},
+        {"from_behind", {from_behind(s, 0), from_behind(s, 1), from_behind(s, 2)}},
         {"confidence", confidence(result)},
         {"candidates", candidates(s)},
         {"F", matrix(s.orientation.f)},
@@ -232,9 +241,10 @@ std::vector<Line> summary(const Result &result)
         lines.push_back({"refused", ofc_status_message(result.status)});
     if (result.status < 0)
         return lines;
-    lines.push_back({"pixels", text("%d in the shadow of a light, %d usable, %d inliers after residuals, %d after norms",
-                                    s.pixel_counts.shaded, s.pixel_counts.usable, s.fit.inlier_count, s.inlier_count)});
-    lines.push_back({"ellipsoid", text("robust R^2 %.4f, dispersion %.4f", s.fit.r_squared, s.fit.dispersion)});
+    lines.push_back({"shadows", result.shadows});
+    lines.push_back({"pixels", text("%d usable, %d inliers after residuals, %d after norms", s.pixel_counts.usable,
+                                    s.fit.inlier_count, s.inlier_count)});
+    lines.push_back({"ellipsoid", text("robust R² %.4f, dispersion %.4f", s.fit.r_squared, s.fit.dispersion)});
     if (s.orientation.rank == 0)
         return lines;
     lines.back().text += text(", location of norms %.4f", s.norm_location.location);
@@ -246,6 +256,8 @@ std::vector<Line> summary(const Result &result)
     for (int c = 0; c < 3; c++) {
         std::string line = text("tilt %7.2f  slant %5.2f  norm %6.1f", degrees(s.tilts.tilt_rad[c]),
                                 degrees(s.slant_rad[c]), s.ellipsoid.norms[c]);
+        if (from_behind(s, c))
+            line += "   above 90 degrees: a light from behind the surface, or a wrong answer";
         if (result.true_f) {
             const Directions truth = directions_of(*result.true_f);
             line += text("   (true %7.2f  %5.2f  %6.1f)", degrees(truth.tilts[c]), degrees(truth.slants[c]), truth.norms[c]);
@@ -266,37 +278,4 @@ std::vector<Line> summary(const Result &result)
                                        d.residual, d.cycles)});
     }
     return lines;
-}
-
-void print_paper_report(const Result &result)
-{
-    const ofc_solution &s = result.solution;
-    const auto triple = [](const double *values) { return Triple{values[0], values[1], values[2]}; };
-    Table table;
-    if (s.slant_source == OFC_SLANTS_JOINT)
-        table.angles("tilt", "OFC", triple(s.tilts.tilt_rad));
-    table.angles("tilt", "Pentland", result.estimates.pentland_tilts);
-    table.angles("slant", "OFC", triple(s.slant_rad));
-    table.angles("slant", "Pentland", result.estimates.pentland_slants);
-    table.angles("slant", "Lee-Rosenfeld", result.estimates.lee_rosenfeld_slants);
-    table.numbers("norm", "OFC", triple(s.ellipsoid.norms));
-    table.numbers("norm", "channel maxima", result.estimates.channel_maxima);
-    table.print();
-    std::printf("\nrobust R^2 %.4f, location of norms %.4f\n", s.fit.r_squared, s.norm_location.location);
-    for (const auto &c : s.fit.coefficients)
-        std::printf("  coefficient %12.4e, t %8.1f, p %.2g\n", c.value, c.t, c.p);
-    std::printf("ranks: colors %d, normals %d\n", s.rank.colors, s.rank.normals);
-    if (!result.check)
-        return;
-    const ofc_check_result &check = *result.check;
-    std::printf("norms of normals: median %.4f, from %.4f to %.4f\n", check.norm_median, check.norm_min, check.norm_max);
-    std::printf("correlation of input and relit channels: %.5f, %.5f, %.5f\n", check.correlation[0], check.correlation[1],
-                check.correlation[2]);
-    const auto angles = [](const char *what, const double *values) {
-        std::printf("%s: %.2f, %.2f, %.2f degrees\n", what, degrees(values[0]), degrees(values[1]), degrees(values[2]));
-    };
-    angles("Pentland's tilts on the relit channels, minus the input's", check.tilt_difference_rad);
-    angles("Pentland's tilts on the shaded depth, minus the input's", check.depth_tilt_difference_rad);
-    std::printf("median angle between the normals and those of the depth: %.2f degrees\n",
-                degrees(check.depth_angle_median_rad));
 }

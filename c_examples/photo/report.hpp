@@ -1,36 +1,8 @@
 // What a run found, as JSON and as text.
 #pragma once
 
-#include "common/depth_options.hpp"
 #include "common/draw.hpp"
-#include "common/estimates.hpp"
-#include "common/picture.hpp"
-
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-struct Result {
-    ofc_status status = OFC_STATUS_OK;
-    ofc_solve_params params = {};
-    ofc_solution solution = {}; // zero where the status is negative
-    cv::Mat inliers;            // CV_8U, 255 for an inlier
-    cv::Mat normals;            // CV_32FC3 x, y, z; zero where there is none
-    cv::Mat uncertainty;        // CV_32F, 1-sigma angle in degrees, NaN where there is no normal; empty where it is not known
-    ofc_covariance covariance = {}; // where the uncertainty is known
-    DepthOptions depth;         // what was wanted of it
-    Surface surface;            // empty where there are no normals
-    std::optional<ofc_check_result> check; // where there are normals
-    Estimates estimates = {};              // likewise
-    std::vector<std::pair<std::string, double>> milliseconds; // by stage, in the order they run
-
-    // Where the truth is known.
-    std::optional<cv::Matx33d> true_f;
-    std::optional<double> median_error_deg;
-
-    bool solved() const { return status == OFC_STATUS_OK; }
-};
+#include "photo/result.hpp"
 
 // The value that this share of the finite ones is below; NaN where there are none.
 double quantile(const cv::Mat &values, double share);
@@ -43,6 +15,3 @@ void write_report(const std::string &path, const Result &result);
 
 // The main numbers in a few lines, each with a short label, for the terminal and the overview.
 std::vector<Line> summary(const Result &result);
-
-// Table 2 and the checks of section 5, for the terminal.
-void print_paper_report(const Result &result);

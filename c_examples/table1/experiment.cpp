@@ -1,22 +1,17 @@
 #include "table1/experiment.hpp"
 
+#include "common/workspace.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace {
 
-// A workspace of so many bytes, aligned for any call.
-std::vector<std::uint64_t> workspace_of(std::size_t bytes)
-{
-    return std::vector<std::uint64_t>(bytes / sizeof(std::uint64_t) + 1);
-}
-
 ofc_status solve(const ofc_image &image, const ofc_solve_params &params, cv::Mat *inliers, ofc_solution &solution)
 {
-    const std::size_t bytes = ofc_solve_workspace_size(image.width, image.height, &params);
-    std::vector<std::uint64_t> workspace = workspace_of(bytes);
-    return ofc_solve(&image, &params, workspace.data(), bytes, inliers ? inliers->data : nullptr, &solution);
+    Workspace workspace(ofc_solve_workspace_size(image.width, image.height, &params));
+    return ofc_solve(&image, &params, workspace.data(), workspace.bytes(), inliers ? inliers->data : nullptr, &solution);
 }
 
 // Unit normals of the inliers by a matrix (F^-1, or the root of C).
@@ -83,6 +78,26 @@ std::vector<cv::Vec2d> along_branch(const ofc_image &image, const ofc_solution &
     return points;
 }
 
+// Table 1; `given` is the solution with the correct tilts, or null where there is none.
+Table table_of(const ofc_image &image, const Directions &correct, const ofc_solution &s, const ofc_solution *given)
+{
+    const Estimates estimates = estimates_of(image, s.inliers);
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    Table table;
+    table.angles("tilt", "correct", correct.tilts);
+    table.angles("tilt", "Pentland", triple(s.tilts.tilt_rad));
+    table.angles("slant", "correct", correct.slants);
+    table.angles("slant", "OFC", triple(s.slant_rad));
+    table.angles("slant", "OFC (correct tilts)", given ? triple(given->slant_rad) : Triple{none, none, none});
+    table.angles("slant", "Pentland", estimates.pentland_slants);
+    table.angles("slant", "Lee-Rosenfeld", estimates.lee_rosenfeld_slants);
+    table.angles("slant", "Zheng-Chellappa", estimates.zheng_chellappa_slants);
+    table.numbers("norm", "correct", correct.norms);
+    table.numbers("norm", "OFC", triple(s.ellipsoid.norms));
+    table.numbers("norm", "channel maxima", estimates.channel_maxima);
+    return table;
+}
+
 } // namespace
 
 cv::Vec2d Experiment::least_on_branch() const
@@ -90,70 +105,58 @@ cv::Vec2d Experiment::least_on_branch() const
     return *std::min_element(branch.begin(), branch.end(), [](const cv::Vec2d &a, const cv::Vec2d &b) { return a[1] < b[1]; });
 }
 
-Experiment run_experiment(const Relief &relief, double noise, std::uint64_t seed)
+Experiment run_experiment(const Relief &relief, const ExperimentParams &wanted)
 {
     Experiment e;
-    e.scene = render(relief, noise, seed);
+    e.scene = render(relief, wanted.noise, wanted.seed);
     const cv::Mat &truth = e.scene.normals;
     const ofc_image image = e.scene.picture.view();
     e.inliers = cv::Mat::zeros(truth.size(), CV_8U);
     ofc_solve_params params;
     ofc_solve_params_default(&params);
-    params.lmeds.seed = seed;
+    params.lmeds.seed = wanted.seed;
     params.orientation_method = OFC_ORIENTATION_DIRECT;
+    wanted.shadows.apply_to(params);
     ofc_solution &s = e.solution;
     e.status = solve(image, params, &e.inliers, s);
+    e.shadows = wanted.shadows.in_words(params, s);
     if (e.status != OFC_STATUS_OK)
         return e;
+    Workspace for_check(ofc_check_workspace_size(image.width, image.height));
+    ofc_check_result check;
+    if (ofc_check(&image, &s, nullptr, for_check.data(), for_check.bytes(), &check) == OFC_STATUS_OK)
+        std::copy_n(check.correlation, 3, e.correlation);
 
     const Directions correct = directions_of(e.scene.f);
     ofc_solution given = {};
     params.tilt_estimator = OFC_TILT_GIVEN;
     std::copy(correct.tilts.begin(), correct.tilts.end(), params.tilt_rad);
     const ofc_status with_tilts = solve(image, params, nullptr, given);
-    const Estimates estimates = estimates_of(image, s.inliers);
-    const auto triple = [](const double *values) { return Triple{values[0], values[1], values[2]}; };
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    const Triple nothing = {none, none, none};
-    e.table.angles("tilt", "correct", correct.tilts);
-    e.table.angles("tilt", "Pentland", triple(s.tilts.tilt_rad));
-    e.table.angles("slant", "correct", correct.slants);
-    e.table.angles("slant", "OFC", triple(s.slant_rad));
-    e.table.angles("slant", "OFC (correct tilts)", with_tilts == OFC_STATUS_OK ? triple(given.slant_rad) : nothing);
-    e.table.angles("slant", "Pentland", estimates.pentland_slants);
-    e.table.angles("slant", "Lee-Rosenfeld", estimates.lee_rosenfeld_slants);
-    e.table.angles("slant", "Zheng-Chellappa", estimates.zheng_chellappa_slants);
-    e.table.numbers("norm", "correct", correct.norms);
-    e.table.numbers("norm", "OFC", triple(s.ellipsoid.norms));
-    e.table.numbers("norm", "channel maxima", estimates.channel_maxima);
-
-    e.answers.push_back(answer("OFC", normals_by(image, s.inliers, s.orientation.f_inverse), truth));
-    e.answers.push_back(with_tilts == OFC_STATUS_OK
-                            ? answer("OFC (correct tilts)", normals_by(image, s.inliers, given.orientation.f_inverse), truth)
-                            : refusal("OFC (correct tilts)", with_tilts));
     ofc_solution joint = {};
     params.tilt_estimator = OFC_TILT_PENTLAND;
     params.orientation_method = OFC_ORIENTATION_JOINT;
     const ofc_status jointly = solve(image, params, nullptr, joint);
-    e.answers.push_back(jointly == OFC_STATUS_OK
-                            ? answer("joint orientation (the default)", normals_by(image, s.inliers, joint.orientation.f_inverse), truth)
-                            : refusal("joint orientation (the default)", jointly));
+    e.joint_shadows = wanted.shadows.in_words(params, joint);
+    e.table = table_of(image, correct, s, with_tilts == OFC_STATUS_OK ? &given : nullptr);
+
+    const auto add = [&](const std::string &name, ofc_status status, const double *f_inverse) {
+        e.answers.push_back(status == OFC_STATUS_OK ? answer(name, normals_by(image, s.inliers, f_inverse), truth)
+                                                    : refusal(name, status));
+    };
+    add("direct method (OFC)", OFC_STATUS_OK, s.orientation.f_inverse);
+    add("direct method, correct tilts", with_tilts, given.orientation.f_inverse);
+    add("joint method", jointly, joint.orientation.f_inverse);
     ofc_annealing_params annealing;
     ofc_annealing_params_default(&annealing);
-    annealing.seed = seed;
-    const std::size_t bytes = ofc_orthogonal_annealing_workspace_size(image.width, image.height, &annealing);
-    std::vector<std::uint64_t> workspace = workspace_of(bytes);
+    annealing.seed = wanted.seed;
+    Workspace workspace(ofc_orthogonal_annealing_workspace_size(image.width, image.height, &annealing));
     ofc_orthogonal found;
-    const auto minimum = [&](const std::string &name, ofc_status status) {
-        e.answers.push_back(status == OFC_STATUS_OK
-                                ? answer(name, normals_by(image, s.inliers, found.chosen.f_inverse), truth)
-                                : refusal(name, status));
-    };
-    minimum("least integral (15), by annealing",
-            ofc_orthogonal_annealing(&image, &s.inliers, s.ellipsoid.root, correct.tilts.data(), &annealing,
-                                     workspace.data(), bytes, &found));
-    minimum("least integral (15), closed form",
-            ofc_orthogonal_closed_form(&image, &s.inliers, s.ellipsoid.root, correct.tilts.data(), 60, &found));
+    const ofc_status annealed = ofc_orthogonal_annealing(&image, &s.inliers, s.ellipsoid.root, correct.tilts.data(),
+                                                         &annealing, workspace.data(), workspace.bytes(), &found);
+    add("least integral (15), annealing", annealed, found.chosen.f_inverse);
+    const ofc_status closed =
+        ofc_orthogonal_closed_form(&image, &s.inliers, s.ellipsoid.root, correct.tilts.data(), 60, &found);
+    add("least integral (15), closed form", closed, found.chosen.f_inverse);
     e.answers.push_back(answer("best orthogonal matrix", turned_to(normals_by(image, s.inliers, s.ellipsoid.root), truth), truth));
     e.branch = along_branch(image, s);
     return e;
