@@ -48,7 +48,7 @@ std::string ShadowOption::in_words(const ofc_solve_params &params, const ofc_sol
     const std::string asked = choice == "auto" ? " (auto)" : "";
     if (choice == "keep" || (choice == "auto" && !joint))
         return "kept" + asked + ": left out no pixel for being in the shadow of a light";
-    const int count = solution.pixel_counts.shaded;
+    const int count = solution.pixel_counts.shadowed;
     return "rejected" + asked + ": left out " + std::to_string(count) + (count == 1 ? " pixel" : " pixels") +
            " in the shadow of a light";
 }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-Estimates estimates_of(const ofc_image &image, const ofc_inliers &inliers)
+Estimates estimates_of(const ofc_image &image, const ofc_inlier_test &inliers)
 {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     const Triple nothing = {none, none, none};

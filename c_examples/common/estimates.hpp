@@ -17,7 +17,7 @@ inline Triple triple(const double *values)
 struct Estimates {
     Triple pentland_tilts, pentland_slants, lee_rosenfeld_slants, zheng_chellappa_slants, channel_maxima;
 };
-Estimates estimates_of(const ofc_image &image, const ofc_inliers &inliers);
+Estimates estimates_of(const ofc_image &image, const ofc_inlier_test &inliers);
 
 // The rows of F as angles and norms.
 struct Directions {

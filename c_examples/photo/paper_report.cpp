@@ -11,7 +11,7 @@
 void print_paper_report(const Picture &picture, const Result &direct)
 {
     const ofc_solution &s = direct.solution;
-    const Estimates estimates = estimates_of(picture.view(), s.inliers);
+    const Estimates estimates = estimates_of(picture.view(), s.inlier_test);
     std::printf("the direct method of the paper; shadows %s\n\n", direct.shadows.c_str());
     Table table;
     table.angles("tilt", "Pentland", triple(s.tilts.tilt_rad));

@@ -114,7 +114,7 @@ std::string trust(const Result &result)
                                                                       : "from integrability and normals that point outward";
     const char *shape = c.convexity > 0.5 ? "clearly convex" : c.convexity > 0.15 ? "more convex than concave" : "convex or concave is a guess";
     // A hundredth as likely.
-    const char *second = c.second_best < 4.6 ? "; another is not ruled out" : "";
+    const char *second = c.log_likelihood_margin < 4.6 ? "; another is not ruled out" : "";
     return text("%s: expected to be off by %.1f degrees, as a whole by %.1f; orientation %s, %s%s", level, sigma,
                 degrees(c.error_rad), evidence, shape, second);
 }
@@ -141,7 +141,7 @@ json confidence(const Result &result)
     static const char *const names[] = {"tilts alone", "outward normals", "integrability", "both"};
     const ofc_confidence &c = result.solution.confidence;
     return {{"evidence", names[c.evidence]},       {"expected_error_deg", degrees(c.error_rad)}, {"convexity", c.convexity},
-            {"second_best", c.second_best},        {"covariance", matrix(c.covariance)},         {"in_words", trust(result)}};
+            {"second_best", c.log_likelihood_margin},        {"covariance", matrix(c.covariance)},         {"in_words", trust(result)}};
 }
 
 } // namespace
@@ -185,7 +185,7 @@ void write_report(const std::string &path, const Result &result)
           {"masked_out", s.pixel_counts.masked_out},
           {"dark", s.pixel_counts.dark},
           {"saturated", s.pixel_counts.saturated},
-          {"shaded", s.pixel_counts.shaded},
+          {"shaded", s.pixel_counts.shadowed},
           {"non_finite", s.pixel_counts.non_finite}}},
         {"coefficients", coefficients(s.fit)},
         {"C", matrix(s.ellipsoid.c)},

@@ -93,7 +93,7 @@ void time_stages(const Picture &picture, Result &result)
     Workspace workspace(ofc_solve_workspace_size(image.width, image.height, &params));
     ofc_color_fit fit;
     ofc_location location;
-    ofc_inliers first, both;
+    ofc_inlier_test first, both;
     ofc_tilts tilts;
     ofc_slants slants[OFC_MAX_CANDIDATES];
     ofc_ellipsoid ellipsoid;

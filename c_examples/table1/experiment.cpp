@@ -15,10 +15,10 @@ ofc_status solve(const ofc_image &image, const ofc_solve_params &params, cv::Mat
 }
 
 // Unit normals of the inliers by a matrix (F^-1, or the root of C).
-cv::Mat normals_by(const ofc_image &image, const ofc_inliers &inliers, const double *matrix)
+cv::Mat normals_by(const ofc_image &image, const ofc_inlier_test &inliers, const double *matrix)
 {
     cv::Mat normals = cv::Mat::zeros(image.height, image.width, CV_32FC3);
-    ofc_normals_from_matrix(&image, &inliers, matrix, OFC_LENGTH_UNIT, normals.ptr<float>(), normals.step);
+    ofc_normals_from_matrix(&image, &inliers, matrix, OFC_NORMALIZATION_UNIT, normals.ptr<float>(), normals.step);
     return normals;
 }
 
@@ -71,7 +71,7 @@ std::vector<cv::Vec2d> along_branch(const ofc_image &image, const ofc_solution &
         ofc_integrability integral;
         if (ofc_orientation_compose(s.ellipsoid.norms, s.tilts.tilt_rad, slant.val, 1e-3, &orientation) == OFC_STATUS_OK &&
             orientation.rank == 3 &&
-            ofc_integrability_integral(&image, &s.inliers, orientation.f_inverse, &integral) == OFC_STATUS_OK &&
+            ofc_integrability_integral(&image, &s.inlier_test, orientation.f_inverse, &integral) == OFC_STATUS_OK &&
             integral.mean > 0)
             points.emplace_back(degrees(slant[0]), std::log10(integral.mean));
     }
@@ -81,7 +81,7 @@ std::vector<cv::Vec2d> along_branch(const ofc_image &image, const ofc_solution &
 // Table 1; `given` is the solution with the correct tilts, or null where there is none.
 Table table_of(const ofc_image &image, const Directions &correct, const ofc_solution &s, const ofc_solution *given)
 {
-    const Estimates estimates = estimates_of(image, s.inliers);
+    const Estimates estimates = estimates_of(image, s.inlier_test);
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     Table table;
     table.angles("tilt", "correct", correct.tilts);
@@ -140,7 +140,7 @@ Experiment run_experiment(const Relief &relief, const ExperimentParams &wanted)
     e.table = table_of(image, correct, s, with_tilts == OFC_STATUS_OK ? &given : nullptr);
 
     const auto add = [&](const std::string &name, ofc_status status, const double *f_inverse) {
-        e.answers.push_back(status == OFC_STATUS_OK ? answer(name, normals_by(image, s.inliers, f_inverse), truth)
+        e.answers.push_back(status == OFC_STATUS_OK ? answer(name, normals_by(image, s.inlier_test, f_inverse), truth)
                                                     : refusal(name, status));
     };
     add("direct method (OFC)", OFC_STATUS_OK, s.orientation.f_inverse);
@@ -151,13 +151,13 @@ Experiment run_experiment(const Relief &relief, const ExperimentParams &wanted)
     annealing.seed = wanted.seed;
     Workspace workspace(ofc_orthogonal_annealing_workspace_size(image.width, image.height, &annealing));
     ofc_orthogonal found;
-    const ofc_status annealed = ofc_orthogonal_annealing(&image, &s.inliers, s.ellipsoid.root, correct.tilts.data(),
+    const ofc_status annealed = ofc_orthogonal_annealing(&image, &s.inlier_test, s.ellipsoid.root, correct.tilts.data(),
                                                          &annealing, workspace.data(), workspace.bytes(), &found);
     add("least integral (15), annealing", annealed, found.chosen.f_inverse);
     const ofc_status closed =
-        ofc_orthogonal_closed_form(&image, &s.inliers, s.ellipsoid.root, correct.tilts.data(), 60, &found);
+        ofc_orthogonal_closed_form(&image, &s.inlier_test, s.ellipsoid.root, correct.tilts.data(), 60, &found);
     add("least integral (15), closed form", closed, found.chosen.f_inverse);
-    e.answers.push_back(answer("best orthogonal matrix", turned_to(normals_by(image, s.inliers, s.ellipsoid.root), truth), truth));
+    e.answers.push_back(answer("best orthogonal matrix", turned_to(normals_by(image, s.inlier_test, s.ellipsoid.root), truth), truth));
     e.branch = along_branch(image, s);
     return e;
 }

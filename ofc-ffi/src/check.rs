@@ -9,7 +9,7 @@ use crate::status::{
     OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, OFC_STATUS_TOO_FEW_PIXELS, ensure, ofc_status,
 };
 use crate::twin::{FromC, ToC, to_c};
-use crate::types::{ofc_color_fit, ofc_inliers, ofc_tilts};
+use crate::types::{ofc_color_fit, ofc_inlier_test, ofc_tilts};
 use core::ffi::c_void;
 use ofc_core::check::{self, Check, Norms, Turn};
 use ofc_core::color::inliers::Inliers;
@@ -191,7 +191,7 @@ pub unsafe extern "C" fn ofc_check(
         let workspace = call.floats(workspace, workspace_bytes, need)?;
         let result = call.output(result)?;
         let orientation = solved(&solution)?;
-        let test = Inliers::from_c(solution.inliers)?;
+        let test = Inliers::from_c(solution.inlier_test)?;
         let coefficients = solution.fit.coefficients.map(Estimate::from);
         let found = check::check(&picture, &test, &orientation, &coefficients, surface.as_ref(), workspace)?;
         *result = found.to_c();
@@ -212,7 +212,7 @@ pub unsafe extern "C" fn ofc_check(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_rank_compute(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     fit: *const ofc_color_fit,
     rank: *mut ofc_rank,
 ) -> ofc_status {

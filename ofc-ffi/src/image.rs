@@ -5,7 +5,7 @@ use crate::status::{
     OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_RESERVED_NOT_ZERO,
     OFC_STATUS_TOO_LARGE, OFC_STATUS_UNKNOWN_FORMAT, Refusal, ensure,
 };
-use crate::types::ofc_inliers;
+use crate::types::ofc_inlier_test;
 use core::ffi::c_void;
 use ofc_core::color::inliers::Inliers;
 use ofc_core::picture::{Image, MAX_PIXELS, Order, Sample, Usable, span};
@@ -180,7 +180,7 @@ impl<'a> Call<'a> {
     /// The test at `inliers`, or every usable pixel of the picture where it is NULL.
     pub(crate) fn inliers(
         &mut self,
-        inliers: *const ofc_inliers,
+        inliers: *const ofc_inlier_test,
         picture: &Image,
     ) -> Result<Inliers, Refusal> {
         let given = unless_null(inliers, || self.params(inliers))?;

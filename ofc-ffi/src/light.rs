@@ -7,7 +7,7 @@ use crate::status::{
     ensure, ofc_status,
 };
 use crate::twin::{ToC, constants, to_c};
-use crate::types::{ofc_inliers, ofc_tilts};
+use crate::types::{ofc_inlier_test, ofc_tilts};
 use core::ffi::c_void;
 use ofc_core::color::inliers::Inliers;
 use ofc_core::light::channel_maxima;
@@ -30,14 +30,14 @@ pub const OFC_TILT_CHOJNACKI: i32 = 3;
 /// The caller's own.
 pub const OFC_TILT_GIVEN: i32 = 4;
 
-/// Where the statistic behind a slant lies: one of OFC_REACH_*.
-pub type ofc_reach = i32;
+/// Where the statistic behind a slant lies: one of OFC_SLANT_*_CLAMPED.
+pub type ofc_slant_clamping = i32;
 /// In the range of the method's equation: the slant solves it.
-pub const OFC_REACH_INSIDE: i32 = 0;
+pub const OFC_SLANT_NOT_CLAMPED: i32 = 0;
 /// Beyond its value at slant 0, which is the answer: the zeros of Tables 1 and 2.
-pub const OFC_REACH_BELOW_ZERO: i32 = 1;
+pub const OFC_SLANT_CLAMPED_TO_ZERO: i32 = 1;
 /// Beyond its value at the largest slant, which is the answer.
-pub const OFC_REACH_ABOVE_LARGEST: i32 = 2;
+pub const OFC_SLANT_CLAMPED_TO_LARGEST: i32 = 2;
 
 /// A disc of pixels.
 #[repr(C)]
@@ -60,8 +60,8 @@ pub struct ofc_slant_estimate {
     /// What it was computed from: the cosine for Pentland, root mean square over mean for Lee and Rosenfeld, mean over
     /// root mean square for Zheng and Chellappa.
     pub statistic: f64,
-    /// Whether the method's equation has a root, one of OFC_REACH_*.
-    pub reach: ofc_reach,
+    /// Whether the method's equation has a root, one of OFC_SLANT_*_CLAMPED.
+    pub clamping: ofc_slant_clamping,
     /// Zero.
     pub reserved: u32,
 }
@@ -69,18 +69,18 @@ pub struct ofc_slant_estimate {
 plain!(ofc_disc, ofc_slant_estimate);
 
 constants!(Reach = {
-    Inside: OFC_REACH_INSIDE,
-    BelowZero: OFC_REACH_BELOW_ZERO,
-    AboveLargest: OFC_REACH_ABOVE_LARGEST,
+    Inside: OFC_SLANT_NOT_CLAMPED,
+    BelowZero: OFC_SLANT_CLAMPED_TO_ZERO,
+    AboveLargest: OFC_SLANT_CLAMPED_TO_LARGEST,
 });
-to_c!(Estimate => ofc_slant_estimate { statistic, reach; slant_rad: slant } zero { reserved });
+to_c!(Estimate => ofc_slant_estimate { statistic; slant_rad: slant, clamping: reach } zero { reserved });
 to_c!(Disc => ofc_disc { x, y, radius_squared });
 
 /// The body of the estimators of tilts.
 fn estimate_tilts(
     call: &mut Call,
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     tilts: *mut ofc_tilts,
     estimate: impl FnOnce(&Image, &Inliers) -> Option<Tilts>,
 ) -> Result<ofc_status, Refusal> {
@@ -108,7 +108,7 @@ fn alone(tilts: [f64; 3]) -> Tilts {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_tilt_pentland(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     tilts: *mut ofc_tilts,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -131,7 +131,7 @@ pub unsafe extern "C" fn ofc_tilt_pentland(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_tilt_pentland_along(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     steps: *const i32,
     count: i32,
     tilts: *mut ofc_tilts,
@@ -158,7 +158,7 @@ pub unsafe extern "C" fn ofc_tilt_pentland_along(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_tilt_lee_rosenfeld(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     tilts: *mut ofc_tilts,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -181,7 +181,7 @@ pub unsafe extern "C" fn ofc_tilt_lee_rosenfeld(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_tilt_zheng_chellappa(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     tilts: *mut ofc_tilts,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -205,7 +205,7 @@ pub unsafe extern "C" fn ofc_tilt_zheng_chellappa(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_tilt_chojnacki(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     disc: *const ofc_disc,
     tilts: *mut ofc_tilts,
 ) -> ofc_status {
@@ -239,7 +239,7 @@ pub extern "C" fn ofc_largest_disc_workspace_size(width: i32, height: i32) -> us
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_largest_disc(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     workspace: *mut c_void,
     workspace_bytes: usize,
     disc: *mut ofc_disc,
@@ -261,7 +261,7 @@ pub unsafe extern "C" fn ofc_largest_disc(
 fn estimate_slants(
     call: &mut Call,
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     slants: *mut ofc_slant_estimate,
     estimate: impl FnOnce(&Image, &Inliers) -> Option<[Estimate; 3]>,
 ) -> Result<ofc_status, Refusal> {
@@ -283,7 +283,7 @@ fn estimate_slants(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_slant_pentland(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     slants: *mut ofc_slant_estimate,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -295,7 +295,7 @@ pub unsafe extern "C" fn ofc_slant_pentland(
 }
 
 /// Lee and Rosenfeld's slants, in [0, pi), from the ratio of root mean square to mean; below 3 / (2 sqrt 2) = 1.0607 the
-/// answer is 0 with OFC_REACH_BELOW_ZERO.
+/// answer is 0 with OFC_SLANT_CLAMPED_TO_ZERO.
 ///
 /// @param image    The picture.
 /// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
@@ -306,7 +306,7 @@ pub unsafe extern "C" fn ofc_slant_pentland(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_slant_lee_rosenfeld(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     slants: *mut ofc_slant_estimate,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -351,7 +351,7 @@ pub unsafe extern "C" fn ofc_slant_zheng_chellappa(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_channel_maxima(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     norms: *mut f64,
 ) -> ofc_status {
     // SAFETY: the contract of this function.

@@ -8,21 +8,21 @@ use crate::status::{
     OFC_STATUS_RANK_DEFICIENT, Refusal, ensure, ofc_status,
 };
 use crate::twin::{FromC, ToC, constants};
-use crate::types::{ofc_inliers, ofc_integrability, ofc_orientation};
+use crate::types::{ofc_inlier_test, ofc_integrability, ofc_orientation};
 use ofc_core::color::inliers::Inliers;
 use ofc_core::math::mat3::Mat3;
 use ofc_core::orientation::integrability;
 use ofc_core::orientation::matrix::{Orientation, compose};
 use ofc_core::surface::normals::{self, Length};
 
-/// What becomes of a normal's length: one of OFC_LENGTH_*.
-pub type ofc_length = i32;
+/// What becomes of a normal's length: one of OFC_NORMALIZATION_*.
+pub type ofc_normalization = i32;
 /// Set to 1.
-pub const OFC_LENGTH_UNIT: i32 = 0;
+pub const OFC_NORMALIZATION_UNIT: i32 = 0;
 /// As the color gives it: near 1 where the model holds.
-pub const OFC_LENGTH_KEPT: i32 = 1;
+pub const OFC_NORMALIZATION_NONE: i32 = 1;
 
-constants!(Length = { Unit: OFC_LENGTH_UNIT, Kept: OFC_LENGTH_KEPT });
+constants!(Length = { Unit: OFC_NORMALIZATION_UNIT, Kept: OFC_NORMALIZATION_NONE });
 
 /// The orientation in a solution that has one which can be inverted, of finite numbers.
 pub(crate) fn solved(solution: &ofc_solution) -> Result<Orientation, Refusal> {
@@ -77,7 +77,7 @@ pub unsafe extern "C" fn ofc_orientation_compose(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_integrability_integral(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     f_inverse: *const f64,
     result: *mut ofc_integrability,
 ) -> ofc_status {
@@ -98,7 +98,7 @@ pub unsafe extern "C" fn ofc_integrability_integral(
 /// @param image      The picture.
 /// @param inliers    The pixels to use; NULL for every usable pixel of the picture.
 /// @param f_inverse  F^-1, row-major.
-/// @param length     OFC_LENGTH_UNIT or OFC_LENGTH_KEPT.
+/// @param length     OFC_NORMALIZATION_UNIT or OFC_NORMALIZATION_NONE.
 /// @param normals    Output: height rows of width times (x, y, z) floats, row 0 at the top, zero where there is no
 ///                   normal. Frame: x right, y up, z toward the camera.
 /// @param normals_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
@@ -108,9 +108,9 @@ pub unsafe extern "C" fn ofc_integrability_integral(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_normals_from_matrix(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     f_inverse: *const f64,
-    length: ofc_length,
+    length: ofc_normalization,
     normals: *mut f32,
     normals_stride_bytes: usize,
 ) -> ofc_status {
@@ -149,7 +149,7 @@ pub unsafe extern "C" fn ofc_normals_compute(
         let picture = call.image(image)?;
         let solution = call.input(solution)?;
         let orientation = solved(&solution)?;
-        let test = Inliers::from_c(solution.inliers)?;
+        let test = Inliers::from_c(solution.inlier_test)?;
         let (normals, stride) = call.output_rows(normals, size(&picture), 3, normals_stride_bytes)?;
         normals::compute(&picture, test.selector(), &orientation.f_inverse, Length::Unit, normals, stride)?;
         Ok(OFC_STATUS_OK)

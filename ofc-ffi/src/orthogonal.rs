@@ -4,7 +4,7 @@ use crate::image::{ofc_image, pixel_count};
 use crate::pointers::{Call, Contract, bytes, plain, unless_null};
 use crate::status::{OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, Refusal, ensure, ofc_status};
 use crate::twin::{FromC, ToC, constants, from_c, to_c};
-use crate::types::{ofc_inliers, ofc_integrability, ofc_slants};
+use crate::types::{ofc_inlier_test, ofc_integrability, ofc_slants};
 use core::ffi::c_void;
 use ofc_core::math::arena::Need;
 use ofc_core::math::mat3::Mat3;
@@ -65,7 +65,7 @@ pub struct ofc_orthogonal {
     /// The other: rows r1 and r2 with the other sign.
     pub twin: ofc_transformation,
     /// How clear the choice is, from 0 (equally good) to 1.
-    pub clarity: f64,
+    pub margin: f64,
     /// The integral of both.
     pub integral: ofc_integrability,
     /// The same before the polish on the whole picture.
@@ -87,7 +87,7 @@ from_c!(Params <= ofc_annealing_params {
 } zero { reserved } where are_valid);
 to_c!(Transformation => ofc_transformation { rows, f, f_inverse; tilt_rad: tilts, slant_rad: slants });
 to_c!(Found => ofc_orthogonal {
-    twin, clarity, integral, unpolished, choice, evaluations; chosen: transformation
+    twin, integral, unpolished, choice, evaluations; chosen: transformation, margin: clarity
 });
 
 /// Three finite tilts, or none where the pointer is NULL.
@@ -146,7 +146,7 @@ pub unsafe extern "C" fn ofc_orthogonal_annealing_workspace_size(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_orthogonal_annealing(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     root: *const f64,
     tilt_rad: *const f64,
     params: *const ofc_annealing_params,
@@ -187,7 +187,7 @@ pub unsafe extern "C" fn ofc_orthogonal_annealing(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_orthogonal_closed_form(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     root: *const f64,
     tilt_rad: *const f64,
     polish_evaluations: u32,
@@ -240,7 +240,7 @@ pub extern "C" fn ofc_constrained_slants_integrable_workspace_size(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_constrained_slants_integrable(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     norms: *const f64,
     tilt_rad: *const f64,
     cosines: *const f64,

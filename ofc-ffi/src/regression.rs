@@ -7,7 +7,7 @@ use crate::status::{
     OFC_STATUS_TOO_LARGE, ensure, ofc_status,
 };
 use crate::twin::ToC;
-use crate::types::{ofc_color_fit, ofc_ellipsoid, ofc_inliers, ofc_lmeds_params, ofc_location};
+use crate::types::{ofc_color_fit, ofc_ellipsoid, ofc_inlier_test, ofc_lmeds_params, ofc_location};
 use core::ffi::c_void;
 use ofc_core::color::inliers::{Band, Inliers};
 use ofc_core::color::{ellipsoid, lmeds, location, norms};
@@ -28,15 +28,15 @@ pub unsafe extern "C" fn ofc_lmeds_params_default(params: *mut ofc_lmeds_params)
 }
 
 /// The number of random six-pixel subsets of which, with probability `confidence`, at least one holds no outlier when
-/// the share of outliers is `outlier_share`; at least `min_subsets` and 1. Pure.
+/// the share of outliers is `outlier_ratio`; at least `min_subsets` and 1. Pure.
 ///
 /// @param confidence     In (0, 1).
-/// @param outlier_share  In [0, 1).
+/// @param outlier_ratio  In [0, 1).
 /// @param min_subsets    Up to 10,000,000.
 /// @return The number, or 0 when a parameter is out of range or the number is above 10,000,000.
 #[unsafe(no_mangle)]
-pub extern "C" fn ofc_lmeds_subset_count(confidence: f64, outlier_share: f64, min_subsets: u32) -> u32 {
-    lmeds::subset_count(confidence, outlier_share, min_subsets).unwrap_or(0)
+pub extern "C" fn ofc_lmeds_subset_count(confidence: f64, outlier_ratio: f64, min_subsets: u32) -> u32 {
+    lmeds::subset_count(confidence, outlier_ratio, min_subsets).unwrap_or(0)
 }
 
 /// Bytes of workspace that ofc_lmeds_fit() needs: at most 4 a pixel or 16 a sample, whichever is more.
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn ofc_lmeds_fit(
     workspace: *mut c_void,
     workspace_bytes: usize,
     fit: *mut ofc_color_fit,
-    inliers: *mut ofc_inliers,
+    inliers: *mut ofc_inlier_test,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
     unsafe { Contract::kept() }.call(|call| {
@@ -163,12 +163,12 @@ pub extern "C" fn ofc_norm_location_workspace_size(width: i32, height: i32) -> u
 pub unsafe extern "C" fn ofc_norm_location(
     image: *const ofc_image,
     coefficients: *const f64,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     rejection: f64,
     workspace: *mut c_void,
     workspace_bytes: usize,
     location: *mut ofc_location,
-    accepted: *mut ofc_inliers,
+    accepted: *mut ofc_inlier_test,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
     unsafe { Contract::kept() }.call(|call| {
@@ -199,9 +199,9 @@ pub unsafe extern "C" fn ofc_norm_location(
 ///
 /// Reference: section 2.2.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn ofc_inliers_mark(
+pub unsafe extern "C" fn ofc_inlier_test_apply(
     image: *const ofc_image,
-    inliers: *const ofc_inliers,
+    inliers: *const ofc_inlier_test,
     mask: *mut u8,
     count: *mut i32,
 ) -> ofc_status {

@@ -72,7 +72,7 @@ pub struct ofc_render_params {
 #[derive(Clone, Copy)]
 pub struct ofc_rendering {
     /// Largest modulus of a color before scaling; 0 when all is dark.
-    pub largest: f64,
+    pub largest_modulus: f64,
     /// The factor applied.
     pub scale: f64,
     /// The picture's true F where all lights are seen: scale times B A, row-major.
@@ -150,7 +150,7 @@ pub unsafe extern "C" fn ofc_render(
         let rendering = call.output(rendering)?;
         let found = render::render(&surface, &lights, &params, Outputs { picture, seen, normals })?;
         let f = lights.orientation().map(|row| scale(row, found.scale));
-        *rendering = ofc_rendering { largest: found.largest, scale: found.scale, f: f.to_c() };
+        *rendering = ofc_rendering { largest_modulus: found.largest, scale: found.scale, f: f.to_c() };
         Ok(OFC_STATUS_OK)
     })
 }

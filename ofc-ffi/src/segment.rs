@@ -30,11 +30,11 @@ pub struct ofc_segment_params {
     /// At most this many regions, 1 to OFC_MAX_REGIONS. Default 8.
     pub max_regions: u32,
     /// Blocks of six pixels that are tried for each region, 1 to 1,000,000. Default 300.
-    pub blocks: u32,
+    pub seed_blocks: u32,
     /// Distance between the pixels of a block, up to 64; 0 for 1, 2, 4, 8 and 16 in turn. Default 0.
     pub spacing: u32,
     /// How far around a block its C is tried, 1 to 1000 pixels. Default 24.
-    pub reach: u32,
+    pub search_radius: u32,
     /// Times that a region is fitted and grown again, up to 100. Default 12.
     pub refits: u32,
     /// Must be zero.
@@ -56,7 +56,7 @@ pub struct ofc_region {
     /// Its value in the label map, from 1 on.
     pub label: i32,
     /// Column and row of the top left pixel of the block that it began at.
-    pub block: [i32; 2],
+    pub seed_block: [i32; 2],
     /// Distance between the pixels of that block.
     pub spacing: i32,
     /// Zero.
@@ -66,10 +66,10 @@ pub struct ofc_region {
 plain!(ofc_segment_params, ofc_region);
 
 to_c!(Params => ofc_segment_params {
-    tolerance, seed, min_pixels, max_regions, blocks, spacing, reach, refits
+    tolerance, seed, min_pixels, max_regions, spacing, refits; seed_blocks: blocks, search_radius: reach
 } zero { saturation, reserved });
 from_c!(Params <= ofc_segment_params {
-    tolerance, seed, min_pixels, max_regions, blocks, spacing, reach, refits
+    tolerance, seed, min_pixels, max_regions, spacing, refits; seed_blocks: blocks, search_radius: reach
 } without { saturation } zero { reserved } where are_valid);
 
 /// The parameters and the saturation level, if one is set.
@@ -80,7 +80,7 @@ impl FromC<ofc_segment_params> for (Params, Option<f32>) {
 }
 
 to_c!(Region => ofc_region {
-    coefficients, residual_deviation, rank, label, block, spacing; pixel_count: pixels
+    coefficients, residual_deviation, rank, label, spacing; pixel_count: pixels, seed_block: block
 } zero { reserved });
 
 /// The workspace of a picture: its colors, and a queue of its pixels.

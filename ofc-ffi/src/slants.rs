@@ -75,7 +75,7 @@ pub unsafe extern "C" fn ofc_constrained_slants_find(
 ///
 /// Reference: eq. 24.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn ofc_constrained_slants_nearest(
+pub unsafe extern "C" fn ofc_constrained_slants_least_squares(
     tilt_rad: *const f64,
     cosines: *const f64,
     slants: *mut ofc_slants,

@@ -13,7 +13,7 @@ use crate::status::{
 };
 use crate::twin::{FromC, ToC, constants, to_c};
 use crate::types::{
-    ofc_color_fit, ofc_ellipsoid, ofc_inliers, ofc_lmeds_params, ofc_location, ofc_orientation,
+    ofc_color_fit, ofc_ellipsoid, ofc_inlier_test, ofc_lmeds_params, ofc_location, ofc_orientation,
     ofc_pixel_counts, ofc_slants, ofc_tilts,
 };
 use core::ffi::c_void;
@@ -126,7 +126,7 @@ pub struct ofc_confidence {
     pub convexity: f64,
     /// How much less likely the next best orientation elsewhere is, as a difference of log likelihoods; infinite where there
     /// is none.
-    pub second_best: f64,
+    pub log_likelihood_margin: f64,
     /// What decided, one of OFC_EVIDENCE_*.
     pub evidence: ofc_evidence,
     /// Zero.
@@ -161,7 +161,7 @@ pub struct ofc_solution {
     /// Location of the lengths of the normals: the second rejection.
     pub norm_location: ofc_location,
     /// The test for inliers after both rejections.
-    pub inliers: ofc_inliers,
+    pub inlier_test: ofc_inlier_test,
     /// C, its root, and the norms and cosines of the rows of F.
     pub ellipsoid: ofc_ellipsoid,
     /// Tilts of the rows of F.
@@ -255,7 +255,7 @@ impl ToC<ofc_confidence> for Joint {
             covariance: covariance.to_c(),
             error_rad: self.expected_error(),
             convexity: *convexity,
-            second_best: *second_best,
+            log_likelihood_margin: *second_best,
             evidence: evidence.to_c(),
             reserved: 0,
         }
@@ -289,7 +289,7 @@ impl ofc_solution {
         self.fit.color_deviations = fit.as_ref().map_or(*color_deviations, |fit| fit.color_deviations);
         self.rank = rank.to_c();
         self.norm_location = norm_location.to_c();
-        self.inliers = inliers.to_c();
+        self.inlier_test = inliers.to_c();
         self.ellipsoid = ellipsoid.to_c();
         self.tilts = tilts.to_c();
         self.confidence = joint.to_c();

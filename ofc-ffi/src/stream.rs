@@ -40,7 +40,7 @@ pub struct ofc_stream_params {
     pub solve: ofc_solve_params,
     /// Where less than this share of the usable pixels fits the model, a frame does not refine it and
     /// OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
-    pub smallest_share: f64,
+    pub min_inlier_ratio: f64,
     /// About how many pixels a frame that refines the model looks at, those that the cold start could not use counting a
     /// third: every n-th row, at least 16, others from frame to frame. 0 looks at all rows. Default 16,384. The tilts
     /// are averaged over about n frames.
@@ -54,7 +54,7 @@ pub struct ofc_stream_params {
 #[derive(Clone, Copy)]
 pub struct ofc_stream_drift {
     /// Share of the usable pixels, of those looked at, whose residual the old model accepts.
-    pub inlier_share: f64,
+    pub inlier_ratio: f64,
     /// Angles between the old and the new rows of F; zero where there is no new model.
     pub angle_rad: [f64; 3],
     /// Lengths of the new rows of F over those of the old; zero where there is no new model.
@@ -77,8 +77,8 @@ constants!(Pass = {
     Integrability: OFC_PASS_INTEGRABILITY,
     Refine: OFC_PASS_REFINE,
 });
-to_c!(Params => ofc_stream_params { solve, smallest_share, refine_pixels } zero { reserved });
-from_c!(Params <= ofc_stream_params { solve, smallest_share, refine_pixels } zero { reserved } where are_valid);
+to_c!(Params => ofc_stream_params { solve, refine_pixels; min_inlier_ratio: smallest_share } zero { reserved });
+from_c!(Params <= ofc_stream_params { solve, refine_pixels; min_inlier_ratio: smallest_share } zero { reserved } where are_valid);
 
 /// A stream in memory of the caller's: see ofc_stream_init(). It may be copied to another place of the same alignment.
 pub struct ofc_stream {
@@ -360,7 +360,7 @@ pub unsafe extern "C" fn ofc_stream_drift_get(
         let nothing = Change { angles: [0.0; 3], strengths: [0.0; 3], dispersion: 0.0 };
         let Change { angles, strengths, dispersion } = change.unwrap_or(nothing);
         *out = ofc_stream_drift {
-            inlier_share,
+            inlier_ratio: inlier_share,
             angle_rad: angles,
             strength_ratio: strengths,
             dispersion_ratio: dispersion,

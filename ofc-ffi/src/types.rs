@@ -17,8 +17,8 @@ plain!(
     ofc_lmeds_params,
     ofc_pixel_counts,
     ofc_estimate,
-    ofc_inliers,
-    ofc_shadow_face,
+    ofc_inlier_test,
+    ofc_shadow_plane,
     ofc_color_fit,
     ofc_location,
     ofc_ellipsoid,
@@ -44,7 +44,7 @@ pub struct ofc_lmeds_params {
     /// Probability that at least one subset is free of outliers, in (0, 1). Default 0.9999.
     pub confidence: f64,
     /// Share of outliers for which that holds, in [0, 1). Default 0.5.
-    pub outlier_share: f64,
+    pub outlier_ratio: f64,
     /// Residuals above this many robust dispersions are outliers, > 0. Default 2.5.
     pub rejection: f64,
     /// Confidence of the limits given with each coefficient, in (0, 1). Default 0.95.
@@ -56,7 +56,7 @@ pub struct ofc_lmeds_params {
     pub seed: u64,
     /// At least this many subsets are drawn, up to 10,000,000. Default 500.
     pub min_subsets: u32,
-    /// Exactly this many subsets, up to 10,000,000; 0 for as many as confidence and outlier_share ask for. Default 0.
+    /// Exactly this many subsets, up to 10,000,000; 0 for as many as confidence and outlier_ratio ask for. Default 0.
     pub subsets: u32,
     /// Pixels that the search looks at, at least 12; the result is evaluated on all. Default 10,000.
     pub sample_size: u32,
@@ -67,10 +67,10 @@ pub struct ofc_lmeds_params {
 }
 
 to_c!(Params => ofc_lmeds_params {
-    confidence, outlier_share, rejection, limits_confidence, seed, min_subsets, subsets, sample_size, method
+    confidence, rejection, limits_confidence, seed, min_subsets, subsets, sample_size, method; outlier_ratio: outlier_share
 } zero { saturation, reserved });
 from_c!(Params <= ofc_lmeds_params {
-    confidence, outlier_share, rejection, limits_confidence, seed, min_subsets, subsets, sample_size, method
+    confidence, rejection, limits_confidence, seed, min_subsets, subsets, sample_size, method; outlier_ratio: outlier_share
 } without { saturation } zero { reserved });
 
 /// The regression's parameters and the saturation level, if one is set.
@@ -103,7 +103,7 @@ pub struct ofc_pixel_counts {
     /// NaN or infinite in a channel.
     pub non_finite: i32,
     /// In the shadow of one of the lights.
-    pub shaded: i32,
+    pub shadowed: i32,
     /// Largest absolute channel value of the usable pixels.
     pub largest: f32,
     /// Zero.
@@ -111,7 +111,7 @@ pub struct ofc_pixel_counts {
 }
 
 to_c!(PixelCounts => ofc_pixel_counts {
-    usable, masked_out, dark, saturated, non_finite, shaded, largest
+    usable, masked_out, dark, saturated, non_finite, largest; shadowed: shaded
 } zero { reserved });
 
 /// A regression coefficient with what the regression knows of it.
@@ -145,19 +145,19 @@ impl From<ofc_estimate> for Estimate {
 /// Those near it, or beyond, with normal . rho below `least`, are no inliers.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
-pub struct ofc_shadow_face {
+pub struct ofc_shadow_plane {
     /// Of unit length, inward.
     pub normal: [f32; 3],
     /// In pixel values.
-    pub least: f32,
+    pub threshold: f32,
 }
 
-to_c!(Face => ofc_shadow_face { normal, least });
+to_c!(Face => ofc_shadow_plane { normal; threshold: least });
 
-impl From<ofc_shadow_face> for Face {
-    fn from(face: ofc_shadow_face) -> Self {
-        let ofc_shadow_face { normal, least } = face;
-        Self { normal, least }
+impl From<ofc_shadow_plane> for Face {
+    fn from(face: ofc_shadow_plane) -> Self {
+        let ofc_shadow_plane { normal, threshold } = face;
+        Self { normal, least: threshold }
     }
 }
 
@@ -165,7 +165,7 @@ impl From<ofc_shadow_face> for Face {
 /// level, and rho^T C rho within both bands. It can be applied to another frame under the same lights.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
-pub struct ofc_inliers {
+pub struct ofc_inlier_test {
     /// Channels at or above this are saturated.
     pub saturation: f64,
     /// C of the first rejection, by residual: c11, c22, c33, c12, c13, c23.
@@ -181,13 +181,13 @@ pub struct ofc_inliers {
     /// Largest accepted rho^T C rho.
     pub norm_high: f64,
     /// Up to three faces of the cone of colors; those that are not there are zero.
-    pub shadow_faces: [ofc_shadow_face; 3],
+    pub shadow_planes: [ofc_shadow_plane; 3],
 }
 
-impl ToC<ofc_inliers> for Inliers {
-    fn to_c(&self) -> ofc_inliers {
+impl ToC<ofc_inlier_test> for Inliers {
+    fn to_c(&self) -> ofc_inlier_test {
         let Self { usable: Usable { saturation, shadow_faces: Faces { faces } }, residual, norm } = self;
-        ofc_inliers {
+        ofc_inlier_test {
             saturation: f64::from(*saturation),
             residual_form: residual.form,
             residual_low: residual.low,
@@ -195,15 +195,15 @@ impl ToC<ofc_inliers> for Inliers {
             norm_form: norm.form,
             norm_low: norm.low,
             norm_high: norm.high,
-            shadow_faces: faces.to_c(),
+            shadow_planes: faces.to_c(),
         }
     }
 }
 
 /// Any numbers are a valid test: comparisons with NaN hold for no pixel.
-impl FromC<ofc_inliers> for Inliers {
-    fn from_c(value: ofc_inliers) -> Result<Self, Refusal> {
-        let faces = Faces { faces: value.shadow_faces.map(Face::from) };
+impl FromC<ofc_inlier_test> for Inliers {
+    fn from_c(value: ofc_inlier_test) -> Result<Self, Refusal> {
+        let faces = Faces { faces: value.shadow_planes.map(Face::from) };
         Ok(Self {
             usable: Usable { saturation: value.saturation as f32, shadow_faces: faces },
             residual: Band { form: value.residual_form, low: value.residual_low, high: value.residual_high },

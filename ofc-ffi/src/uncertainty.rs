@@ -110,7 +110,7 @@ pub unsafe extern "C" fn ofc_normals_uncertainty(
         let picture = call.image(image)?;
         let solution = call.input(solution)?;
         let sources = sources(&solution)?;
-        let inliers = Inliers::from_c(solution.inliers)?;
+        let inliers = Inliers::from_c(solution.inlier_test)?;
         let (angles, stride) = call.output_rows(angle_rad, size(&picture), 1, angle_stride_bytes)?;
         Uncertainty::new(&sources).compute(&picture, inliers.selector(), angles, stride)?;
         Ok(OFC_STATUS_OK)

@@ -23,7 +23,7 @@ ofc_image ball_image(void);
 struct stages {
     ofc_solve_params params;
     ofc_color_fit fit;
-    ofc_inliers inliers;
+    ofc_inlier_test inliers;
     ofc_solution solution;
 };
 extern struct stages stages;

@@ -53,7 +53,7 @@ static void check(void **state)
     broken.orientation.f[4] = NAN;
     REFUSED(OFC_STATUS_INVALID_PARAMETER, out, CHECK(&broken, workspace, need, &out.result));
     broken = *solution;
-    broken.inliers.norm_high = -1;
+    broken.inlier_test.norm_high = -1;
     REFUSED(OFC_STATUS_TOO_FEW_PIXELS, out, CHECK(&broken, workspace, need, &out.result));
     memset(&out, PATTERN, sizeof out);
     assert_int_equal(check_of(&image), OFC_STATUS_OK);
@@ -224,9 +224,9 @@ static void segmentation(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, min_pixels, 11);
     BAD(OFC_STATUS_INVALID_PARAMETER, max_regions, 0);
     BAD(OFC_STATUS_INVALID_PARAMETER, max_regions, OFC_MAX_REGIONS + 1);
-    BAD(OFC_STATUS_INVALID_PARAMETER, blocks, 0);
+    BAD(OFC_STATUS_INVALID_PARAMETER, seed_blocks, 0);
     BAD(OFC_STATUS_INVALID_PARAMETER, spacing, 65);
-    BAD(OFC_STATUS_INVALID_PARAMETER, reach, 0);
+    BAD(OFC_STATUS_INVALID_PARAMETER, search_radius, 0);
     BAD(OFC_STATUS_INVALID_PARAMETER, refits, 101);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[0], 1);
 #undef BAD

@@ -11,14 +11,14 @@ static struct {
 static const int32_t steps[] = {1, 0, 0, 1, 2, 1, -1, 3};
 static ofc_disc disc = {.x = WIDTH / 2, .y = HEIGHT / 2, .radius_squared = 400};
 
-typedef ofc_status (*tilt_call)(const ofc_image *, const ofc_inliers *, ofc_tilts *);
+typedef ofc_status (*tilt_call)(const ofc_image *, const ofc_inlier_test *, ofc_tilts *);
 
-static ofc_status along(const ofc_image *image, const ofc_inliers *inliers, ofc_tilts *tilts)
+static ofc_status along(const ofc_image *image, const ofc_inlier_test *inliers, ofc_tilts *tilts)
 {
     return ofc_tilt_pentland_along(image, inliers, steps, 4, tilts);
 }
 
-static ofc_status chojnacki(const ofc_image *image, const ofc_inliers *inliers, ofc_tilts *tilts)
+static ofc_status chojnacki(const ofc_image *image, const ofc_inlier_test *inliers, ofc_tilts *tilts)
 {
     return ofc_tilt_chojnacki(image, inliers, &disc, tilts);
 }
@@ -26,7 +26,7 @@ static ofc_status chojnacki(const ofc_image *image, const ofc_inliers *inliers, 
 static tilt_call tilt;
 static ofc_status tilt_of(const ofc_image *image)
 {
-    return tilt(image, &stages.solution.inliers, &out.tilts);
+    return tilt(image, &stages.solution.inlier_test, &out.tilts);
 }
 
 static void tilts(void **state)
@@ -40,7 +40,7 @@ static void tilts(void **state)
         tilt = calls[i];
         refuses_bad_images(tilt_of, &out, sizeof out);
         ofc_image image = ball_image();
-        ofc_inliers *inliers = &stages.solution.inliers;
+        ofc_inlier_test *inliers = &stages.solution.inlier_test;
         REFUSED(OFC_STATUS_NULL_POINTER, out, tilt(&image, inliers, NULL));
         REFUSED(OFC_STATUS_MISALIGNED, out, tilt(&image, MISALIGNED(inliers), &out.tilts));
         REFUSED(OFC_STATUS_MISALIGNED, out, tilt(&image, inliers, MISALIGNED(&out.tilts)));
@@ -108,7 +108,7 @@ static void discs(void **state)
     REFUSED(OFC_STATUS_MISALIGNED, out, LARGEST(NULL, workspace, need, MISALIGNED(&out.disc)));
     REFUSED(OFC_STATUS_WORKSPACE_TOO_SMALL, out, LARGEST(NULL, workspace, need - 1, &out.disc));
     REFUSED(OFC_STATUS_OVERLAP, out, LARGEST(NULL, workspace, need, (ofc_disc *)workspace));
-    REFUSED(OFC_STATUS_OVERLAP, out, LARGEST((ofc_inliers *)workspace, workspace, need, &out.disc));
+    REFUSED(OFC_STATUS_OVERLAP, out, LARGEST((ofc_inlier_test *)workspace, workspace, need, &out.disc));
     assert_int_equal(largest(&image), OFC_STATUS_OK);
     assert_in_range(out.disc.x, WIDTH / 2 - 2, WIDTH / 2 + 2);
     assert_in_range(out.disc.y, HEIGHT / 2 - 2, HEIGHT / 2 + 2);
@@ -128,9 +128,9 @@ static void discs(void **state)
     assert_int_equal(ofc_tilt_chojnacki(&image, NULL, &whole, &out.tilts), OFC_STATUS_OK);
 }
 
-typedef ofc_status (*slant_call)(const ofc_image *, const ofc_inliers *, ofc_slant_estimate *);
+typedef ofc_status (*slant_call)(const ofc_image *, const ofc_inlier_test *, ofc_slant_estimate *);
 
-static ofc_status zheng_chellappa(const ofc_image *image, const ofc_inliers *inliers, ofc_slant_estimate *slants)
+static ofc_status zheng_chellappa(const ofc_image *image, const ofc_inlier_test *inliers, ofc_slant_estimate *slants)
 {
     (void)inliers;
     return ofc_slant_zheng_chellappa(image, slants);
@@ -163,7 +163,7 @@ static void slants(void **state)
         assert_true(is_untouched(&out.behind, sizeof out.behind));
         for (int c = 0; c < 3; c++) {
             assert_true(out.slants[c].slant_rad >= 0 && out.slants[c].slant_rad < 3.15);
-            assert_in_range(out.slants[c].reach, OFC_REACH_INSIDE, OFC_REACH_ABOVE_LARGEST);
+            assert_in_range(out.slants[c].clamping, OFC_SLANT_NOT_CLAMPED, OFC_SLANT_CLAMPED_TO_LARGEST);
         }
         image.mask = mask;
         image.mask_stride_bytes = WIDTH;

@@ -12,7 +12,7 @@ static struct {
 
 static ofc_status tilts(const ofc_image *image)
 {
-    return ofc_tilt_pentland(image, &stages.solution.inliers, &out.tilts);
+    return ofc_tilt_pentland(image, &stages.solution.inlier_test, &out.tilts);
 }
 
 static void tilt_pentland(void **state)
@@ -20,7 +20,7 @@ static void tilt_pentland(void **state)
     (void)state;
     refuses_bad_images(tilts, &out, sizeof out);
     ofc_image image = ball_image();
-    ofc_inliers *inliers = &stages.solution.inliers;
+    ofc_inlier_test *inliers = &stages.solution.inlier_test;
     REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_tilt_pentland(&image, inliers, NULL));
     REFUSED(OFC_STATUS_MISALIGNED, out, ofc_tilt_pentland(&image, MISALIGNED(inliers), &out.tilts));
     REFUSED(OFC_STATUS_MISALIGNED, out, ofc_tilt_pentland(&image, inliers, MISALIGNED(&out.tilts)));
@@ -78,7 +78,7 @@ static void orientation_compose(void **state)
 
 static ofc_status integral(const ofc_image *image)
 {
-    return ofc_integrability_integral(image, &stages.solution.inliers, stages.solution.orientation.f_inverse,
+    return ofc_integrability_integral(image, &stages.solution.inlier_test, stages.solution.orientation.f_inverse,
                                       &out.integrability);
 }
 
@@ -87,7 +87,7 @@ static void integrability_integral(void **state)
     (void)state;
     refuses_bad_images(integral, &out, sizeof out);
     ofc_image image = ball_image();
-    const ofc_inliers *inliers = &stages.solution.inliers;
+    const ofc_inlier_test *inliers = &stages.solution.inlier_test;
     const double *inverse = stages.solution.orientation.f_inverse;
 #define INTEGRAL(inliers, inverse, out) ofc_integrability_integral(&image, inliers, inverse, out)
     REFUSED(OFC_STATUS_NULL_POINTER, out, INTEGRAL(inliers, NULL, &out.integrability));
@@ -107,7 +107,7 @@ static void integrability_integral(void **state)
 
 static ofc_status from_matrix(const ofc_image *image)
 {
-    return ofc_normals_from_matrix(image, NULL, stages.solution.orientation.f_inverse, OFC_LENGTH_KEPT, out.normals,
+    return ofc_normals_from_matrix(image, NULL, stages.solution.orientation.f_inverse, OFC_NORMALIZATION_NONE, out.normals,
                                    WIDTH * 3 * sizeof(float));
 }
 
@@ -122,7 +122,7 @@ static void normals_refused(void **state)
     refuses_bad_images(from_matrix, &out, sizeof out);
     refuses_bad_images(compute, &out, sizeof out);
     const ofc_image image = ball_image();
-    const ofc_inliers *inliers = &stages.solution.inliers;
+    const ofc_inlier_test *inliers = &stages.solution.inlier_test;
     const double *inverse = stages.solution.orientation.f_inverse;
     const size_t row = WIDTH * 3 * sizeof(float);
 #define FROM(inliers, inverse, length, normals, stride)                                                                \
@@ -167,7 +167,7 @@ static void normals_written(void **state)
     (void)state;
     const ofc_image image = ball_image();
     static uint8_t mask[PIXELS];
-    assert_int_equal(ofc_inliers_mark(&image, &stages.solution.inliers, mask, NULL), OFC_STATUS_OK);
+    assert_int_equal(ofc_inlier_test_apply(&image, &stages.solution.inlier_test, mask, NULL), OFC_STATUS_OK);
     memset(&out, PATTERN, sizeof out);
     assert_int_equal(ofc_normals_compute(&image, &stages.solution, out.normals, PADDED * sizeof(float)), OFC_STATUS_OK);
     for (int y = 0; y < HEIGHT; y++) {
@@ -182,7 +182,7 @@ static void normals_written(void **state)
     /* The same by the stage call; and kept lengths differ from one. */
     static float again[PIXELS * 3];
     const double *inverse = stages.solution.orientation.f_inverse;
-    assert_int_equal(ofc_normals_from_matrix(&image, &stages.solution.inliers, inverse, OFC_LENGTH_UNIT, again,
+    assert_int_equal(ofc_normals_from_matrix(&image, &stages.solution.inlier_test, inverse, OFC_NORMALIZATION_UNIT, again,
                                              WIDTH * 3 * sizeof(float)),
                      OFC_STATUS_OK);
     for (int y = 0; y < HEIGHT; y++)

@@ -35,12 +35,12 @@ static void is_sound(const ofc_orthogonal *found)
             assert_true(fabs(found->twin.rows[3 * i + j] - sign * found->chosen.rows[3 * i + j]) < 1e-12);
         }
     assert_true(found->integral.mean <= found->unpolished.mean && found->integral.cells > 1000);
-    assert_true(found->clarity >= 0 && found->clarity <= 1);
+    assert_true(found->margin >= 0 && found->margin <= 1);
 }
 
 static ofc_status anneal(const ofc_image *image)
 {
-    return ofc_orthogonal_annealing(image, &stages.solution.inliers, root, tilts, &params, cells, sizeof cells,
+    return ofc_orthogonal_annealing(image, &stages.solution.inlier_test, root, tilts, &params, cells, sizeof cells,
                                     &out.found);
 }
 
@@ -49,7 +49,7 @@ static void annealing(void **state)
     (void)state;
     refuses_bad_images(anneal, &out, sizeof out);
     const ofc_image image = ball_image();
-    ofc_inliers *inliers = &stages.solution.inliers;
+    ofc_inlier_test *inliers = &stages.solution.inlier_test;
     const size_t need = ofc_orthogonal_annealing_workspace_size(WIDTH, HEIGHT, &params);
     assert_int_equal(need, sizeof cells);
     assert_int_equal(ofc_orthogonal_annealing_workspace_size(10, 10, &params),
@@ -108,7 +108,7 @@ static void annealing(void **state)
 
 static ofc_status closed(const ofc_image *image)
 {
-    return ofc_orthogonal_closed_form(image, &stages.solution.inliers, root, tilts, 60, &out.found);
+    return ofc_orthogonal_closed_form(image, &stages.solution.inlier_test, root, tilts, 60, &out.found);
 }
 
 static void closed_form(void **state)
@@ -116,7 +116,7 @@ static void closed_form(void **state)
     (void)state;
     refuses_bad_images(closed, &out, sizeof out);
     ofc_image image = ball_image();
-    ofc_inliers *inliers = &stages.solution.inliers;
+    ofc_inlier_test *inliers = &stages.solution.inlier_test;
 #define CLOSED(inliers, root, tilts, evaluations, found)                                                               \
     ofc_orthogonal_closed_form(&image, inliers, root, tilts, evaluations, found)
     REFUSED(OFC_STATUS_NULL_POINTER, out, CLOSED(inliers, NULL, tilts, 60, &out.found));
@@ -144,7 +144,7 @@ static void closed_form(void **state)
 
 static ofc_status integrable(const ofc_image *image)
 {
-    return ofc_constrained_slants_integrable(image, &stages.solution.inliers, norms, tilts, cosines, 0.05, 2000, cells,
+    return ofc_constrained_slants_integrable(image, &stages.solution.inlier_test, norms, tilts, cosines, 0.05, 2000, cells,
                                              sizeof cells, &out.slants);
 }
 
@@ -153,7 +153,7 @@ static void constrained_slants_integrable(void **state)
     (void)state;
     refuses_bad_images(integrable, &out, sizeof out);
     ofc_image image = ball_image();
-    ofc_inliers *inliers = &stages.solution.inliers;
+    ofc_inlier_test *inliers = &stages.solution.inlier_test;
     const size_t need = ofc_constrained_slants_integrable_workspace_size(WIDTH, HEIGHT, 2000);
     assert_int_equal(need, OFC_CONSTRAINED_SLANTS_INTEGRABLE_WORKSPACE_SIZE(WIDTH, HEIGHT, 2000));
     assert_int_equal(ofc_constrained_slants_integrable_workspace_size(WIDTH, 0, 2000), 0);

@@ -3,7 +3,7 @@
 
 static struct {
     ofc_color_fit fit;
-    ofc_inliers inliers;
+    ofc_inlier_test inliers;
     ofc_location location;
     ofc_ellipsoid ellipsoid;
     int32_t count;
@@ -44,8 +44,8 @@ static void lmeds_fit(void **state)
     REFUSED(OFC_STATUS_MISALIGNED, out, FIT(params, workspace, need, &out.fit, MISALIGNED(&out.inliers)));
     REFUSED(OFC_STATUS_WORKSPACE_TOO_SMALL, out, FIT(params, workspace, need - 1, &out.fit, &out.inliers));
     REFUSED(OFC_STATUS_OVERLAP, out, FIT(params, workspace, need, (ofc_color_fit *)workspace, &out.inliers));
-    REFUSED(OFC_STATUS_OVERLAP, out, FIT(params, workspace, need, &out.fit, (ofc_inliers *)&out.fit));
-    REFUSED(OFC_STATUS_OVERLAP, out, FIT(params, workspace, need, &out.fit, (ofc_inliers *)(void *)&stages.params));
+    REFUSED(OFC_STATUS_OVERLAP, out, FIT(params, workspace, need, &out.fit, (ofc_inlier_test *)&out.fit));
+    REFUSED(OFC_STATUS_OVERLAP, out, FIT(params, workspace, need, &out.fit, (ofc_inlier_test *)(void *)&stages.params));
     ofc_lmeds_params bad = *params;
     bad.rejection = NAN;
     REFUSED(OFC_STATUS_INVALID_PARAMETER, out, FIT(&bad, workspace, need, &out.fit, &out.inliers));
@@ -122,7 +122,7 @@ static void norm_location(void **state)
     (void)state;
     refuses_bad_images(norms, &out, sizeof out);
     const ofc_image image = ball_image();
-    const ofc_inliers *first = &stages.inliers;
+    const ofc_inlier_test *first = &stages.inliers;
     const size_t need = ofc_norm_location_workspace_size(WIDTH, HEIGHT);
     assert_int_equal(need, PIXELS * 8);
     assert_int_equal(ofc_norm_location_workspace_size(-1, HEIGHT), 0);
@@ -141,24 +141,24 @@ static void norm_location(void **state)
     REFUSED(OFC_STATUS_MISALIGNED, out, NORMS(form, first, 2.5, workspace, need, &out.location, MISALIGNED(&out.inliers)));
     REFUSED(OFC_STATUS_WORKSPACE_TOO_SMALL, out, NORMS(form, first, 2.5, workspace, need - 1, &out.location, &out.inliers));
     REFUSED(OFC_STATUS_OVERLAP, out, NORMS(form, first, 2.5, workspace, need, &out.location, &stages.inliers));
-    REFUSED(OFC_STATUS_OVERLAP, out, NORMS(form, first, 2.5, workspace, need, &out.location, (ofc_inliers *)&out.location));
+    REFUSED(OFC_STATUS_OVERLAP, out, NORMS(form, first, 2.5, workspace, need, &out.location, (ofc_inlier_test *)&out.location));
     REFUSED(OFC_STATUS_OVERLAP, out, NORMS((double *)workspace, first, 2.5, workspace, need, &out.location, &out.inliers));
     REFUSED(OFC_STATUS_INVALID_PARAMETER, out, NORMS(form, first, 0, workspace, need, &out.location, &out.inliers));
     REFUSED(OFC_STATUS_INVALID_PARAMETER, out, NORMS(form, first, NAN, workspace, need, &out.location, &out.inliers));
     REFUSED(OFC_STATUS_INVALID_PARAMETER, out, NORMS(form, first, INFINITY, workspace, need, &out.location, &out.inliers));
     const double bad[6] = {1, NAN, 1, 0, 0, 0};
     REFUSED(OFC_STATUS_INVALID_PARAMETER, out, NORMS(bad, first, 2.5, workspace, need, &out.location, &out.inliers));
-    ofc_inliers nobody = *first;
+    ofc_inlier_test nobody = *first;
     nobody.residual_high = NAN;
     REFUSED(OFC_STATUS_TOO_FEW_PIXELS, out, NORMS(form, &nobody, 2.5, workspace, need, &out.location, &out.inliers));
     assert_int_equal(norms(&image), OFC_STATUS_OK);
     assert_memory_equal(&out.location, &stages.solution.norm_location, sizeof out.location);
-    assert_memory_equal(&out.inliers, &stages.solution.inliers, sizeof out.inliers);
+    assert_memory_equal(&out.inliers, &stages.solution.inlier_test, sizeof out.inliers);
 }
 
 static ofc_status mark(const ofc_image *image)
 {
-    return ofc_inliers_mark(image, &stages.inliers, out.mask, &out.count);
+    return ofc_inlier_test_apply(image, &stages.inliers, out.mask, &out.count);
 }
 
 static void inliers_mark(void **state)
@@ -166,17 +166,17 @@ static void inliers_mark(void **state)
     (void)state;
     refuses_bad_images(mark, &out, sizeof out);
     const ofc_image image = ball_image();
-    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_inliers_mark(&image, &stages.inliers, NULL, &out.count));
-    REFUSED(OFC_STATUS_MISALIGNED, out, ofc_inliers_mark(&image, MISALIGNED(&stages.inliers), out.mask, &out.count));
-    REFUSED(OFC_STATUS_MISALIGNED, out, ofc_inliers_mark(&image, &stages.inliers, out.mask, MISALIGNED(&out.count)));
-    REFUSED(OFC_STATUS_OVERLAP, out, ofc_inliers_mark(&image, &stages.inliers, &ball[0][0][0], &out.count));
-    REFUSED(OFC_STATUS_OVERLAP, out, ofc_inliers_mark(&image, &stages.inliers, (uint8_t *)&stages.inliers, NULL));
-    REFUSED(OFC_STATUS_OVERLAP, out, ofc_inliers_mark(&image, NULL, out.mask, (int32_t *)(void *)out.mask));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_inlier_test_apply(&image, &stages.inliers, NULL, &out.count));
+    REFUSED(OFC_STATUS_MISALIGNED, out, ofc_inlier_test_apply(&image, MISALIGNED(&stages.inliers), out.mask, &out.count));
+    REFUSED(OFC_STATUS_MISALIGNED, out, ofc_inlier_test_apply(&image, &stages.inliers, out.mask, MISALIGNED(&out.count)));
+    REFUSED(OFC_STATUS_OVERLAP, out, ofc_inlier_test_apply(&image, &stages.inliers, &ball[0][0][0], &out.count));
+    REFUSED(OFC_STATUS_OVERLAP, out, ofc_inlier_test_apply(&image, &stages.inliers, (uint8_t *)&stages.inliers, NULL));
+    REFUSED(OFC_STATUS_OVERLAP, out, ofc_inlier_test_apply(&image, NULL, out.mask, (int32_t *)(void *)out.mask));
     memset(&out, PATTERN, sizeof out);
     assert_int_equal(mark(&image), OFC_STATUS_OK);
     assert_true(is_untouched(out.mask + PIXELS, 64));
     assert_int_equal(out.count, stages.fit.inlier_count);
-    assert_int_equal(ofc_inliers_mark(&image, NULL, out.mask, NULL), OFC_STATUS_OK);
+    assert_int_equal(ofc_inlier_test_apply(&image, NULL, out.mask, NULL), OFC_STATUS_OK);
     int32_t usable = 0;
     for (int i = 0; i < PIXELS; i++)
         usable += out.mask[i] == 255;

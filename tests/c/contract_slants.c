@@ -48,7 +48,7 @@ static ofc_status find(const double *t, const double *h)
 
 static ofc_status nearest(const double *t, const double *h)
 {
-    return ofc_constrained_slants_nearest(t, h, out.candidates);
+    return ofc_constrained_slants_least_squares(t, h, out.candidates);
 }
 
 static ofc_status sample(const double *t, const double *h)
@@ -90,10 +90,10 @@ static void constrained_slants_nearest(void **state)
 {
     (void)state;
     refuses_bad_angles(nearest);
-    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_constrained_slants_nearest(tilts, cosines, NULL));
-    REFUSED(OFC_STATUS_MISALIGNED, out, ofc_constrained_slants_nearest(tilts, cosines, MISALIGNED(out.candidates)));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_constrained_slants_least_squares(tilts, cosines, NULL));
+    REFUSED(OFC_STATUS_MISALIGNED, out, ofc_constrained_slants_least_squares(tilts, cosines, MISALIGNED(out.candidates)));
     static ofc_slants shared;
-    REFUSED(OFC_STATUS_OVERLAP, out, ofc_constrained_slants_nearest((double *)&shared, cosines, &shared));
+    REFUSED(OFC_STATUS_OVERLAP, out, ofc_constrained_slants_least_squares((double *)&shared, cosines, &shared));
     memset(&out, PATTERN, sizeof out);
     assert_int_equal(nearest(tilts, cosines), OFC_STATUS_OK);
     assert_true(out.candidates[0].residual < 1e-9);

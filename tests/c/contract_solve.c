@@ -90,10 +90,10 @@ static void bad_parameters(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.confidence, 0);
     BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.confidence, 1);
     BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.confidence, NAN);
-    BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.outlier_share, -0.1);
-    BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.outlier_share, 1);
-    BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.outlier_share, 0.999); /* more subsets than there may be */
-    BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.outlier_share, NAN);
+    BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.outlier_ratio, -0.1);
+    BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.outlier_ratio, 1);
+    BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.outlier_ratio, 0.999); /* more subsets than there may be */
+    BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.outlier_ratio, NAN);
     BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.rejection, 0);
     BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.rejection, -2.5);
     BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.rejection, INFINITY);
@@ -180,7 +180,7 @@ static void answers(void **state)
     assert_int_equal(out.solution.inlier_count, inliers);
     const ofc_pixel_counts *pixel_counts = &out.solution.pixel_counts;
     assert_int_equal(pixel_counts->usable + pixel_counts->masked_out + pixel_counts->dark + pixel_counts->saturated + pixel_counts->non_finite +
-                         pixel_counts->shaded,
+                         pixel_counts->shadowed,
                      PIXELS);
     /* A mask is a wish, and the answer does not depend on it. */
     static ofc_solution again;
@@ -210,7 +210,7 @@ static void methods(void **state)
     const ofc_confidence *confidence = &joint.confidence;
     assert_true(confidence->evidence >= OFC_EVIDENCE_OUTWARD && confidence->evidence <= OFC_EVIDENCE_BOTH);
     assert_true(confidence->error_rad > 0 && confidence->error_rad < 0.2);
-    assert_true(confidence->convexity > 0.9 && confidence->convexity <= 1 && confidence->second_best > 0);
+    assert_true(confidence->convexity > 0.9 && confidence->convexity <= 1 && confidence->log_likelihood_margin > 0);
     for (int c = 0; c < 3; c++) /* the ball suits the direct method too */
         assert_true(fabs(joint.slant_rad[c] - stages.solution.slant_rad[c]) < 0.2);
     /* The direct method claims no certainty; given tilts take it. */
@@ -219,17 +219,17 @@ static void methods(void **state)
     assert_true(stages.solution.confidence.error_rad == 0);
     /* The border of the ball is in the shadow of one light or another: left out by the joint method, kept by the direct
      * one unless asked. */
-    assert_true(joint.pixel_counts.shaded > 0 && joint.inliers.shadow_faces[0].least > 0);
-    assert_true(stages.solution.pixel_counts.shaded == 0 && stages.solution.inliers.shadow_faces[0].least == 0);
-    assert_int_equal(joint.pixel_counts.usable + joint.pixel_counts.shaded, stages.solution.pixel_counts.usable);
+    assert_true(joint.pixel_counts.shadowed > 0 && joint.inlier_test.shadow_planes[0].threshold > 0);
+    assert_true(stages.solution.pixel_counts.shadowed == 0 && stages.solution.inlier_test.shadow_planes[0].threshold == 0);
+    assert_int_equal(joint.pixel_counts.usable + joint.pixel_counts.shadowed, stages.solution.pixel_counts.usable);
     static ofc_solution other;
     params.shadow_rejection = OFC_SHADOW_REJECTION_OFF;
     assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &other), OFC_STATUS_OK);
-    assert_int_equal(other.pixel_counts.shaded, 0);
+    assert_int_equal(other.pixel_counts.shadowed, 0);
     params.orientation_method = OFC_ORIENTATION_DIRECT;
     params.shadow_rejection = OFC_SHADOW_REJECTION_ON;
     assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &other), OFC_STATUS_OK);
-    assert_int_equal(other.pixel_counts.shaded, joint.pixel_counts.shaded);
+    assert_int_equal(other.pixel_counts.shadowed, joint.pixel_counts.shadowed);
     params.orientation_method = OFC_ORIENTATION_JOINT;
     params.shadow_rejection = OFC_SHADOW_REJECTION_AUTO;
     params.tilt_estimator = OFC_TILT_GIVEN;
@@ -294,7 +294,7 @@ static void defaults(void **state)
     assert_int_equal(ofc_solve_params_default(&out.params), OFC_STATUS_OK);
     assert_true(is_untouched(out.before_workspace, sizeof out.before_workspace));
     const ofc_solve_params *params = &out.params;
-    assert_true(params->lmeds.confidence == 0.9999 && params->lmeds.outlier_share == 0.5);
+    assert_true(params->lmeds.confidence == 0.9999 && params->lmeds.outlier_ratio == 0.5);
     assert_true(params->lmeds.rejection == 2.5 && params->lmeds.limits_confidence == 0.95);
     assert_true(params->lmeds.saturation == 0 && params->rank_threshold == 1e-3);
     assert_int_equal(params->lmeds.seed, 0);

@@ -100,7 +100,7 @@ static void answers_are_those_of_solve(void **state)
     static uint8_t mask[HEIGHT][WIDTH];
     const ofc_image image = ball_image();
     assert_int_equal(ofc_normals_compute(&image, &stages.solution, normals[0][0], sizeof normals[0]), OFC_STATUS_OK);
-    assert_int_equal(ofc_inliers_mark(&image, &stages.solution.inliers, mask[0], NULL), OFC_STATUS_OK);
+    assert_int_equal(ofc_inlier_test_apply(&image, &stages.solution.inlier_test, mask[0], NULL), OFC_STATUS_OK);
     memset(&out, PATTERN, sizeof out);
     for (int y = 0; y < HEIGHT; y++) {
         const ofc_image row = row_of(ball, y);
@@ -166,7 +166,7 @@ static void frames_refine_or_refuse(void **state)
     assert_int_equal(ofc_stream_drift_get(stream, &out.drift), OFC_STATUS_OK);
     assert_int_equal(out.drift.refined, 1);
     assert_int_equal(out.drift.reserved, 0);
-    assert_true(out.drift.inlier_share > 0.9 && out.drift.inlier_share <= 1);
+    assert_true(out.drift.inlier_ratio > 0.9 && out.drift.inlier_ratio <= 1);
     for (int i = 0; i < 3; i++) {
         assert_true(out.drift.angle_rad[i] >= 0 && out.drift.angle_rad[i] < 0.02);
         assert_true(fabs(out.drift.strength_ratio[i] - 1) < 0.01);
@@ -183,7 +183,7 @@ static void frames_refine_or_refuse(void **state)
     assert_int_equal(out.pass, OFC_PASS_COLORS);
     assert_int_equal(ofc_stream_drift_get(stream, &out.drift), OFC_STATUS_OK);
     assert_int_equal(out.drift.refined, 0);
-    assert_true(out.drift.inlier_share < 0.5 && out.drift.dispersion_ratio == 0);
+    assert_true(out.drift.inlier_ratio < 0.5 && out.drift.dispersion_ratio == 0);
     static ofc_solution before;
     before = out.solution;
     assert_int_equal(ofc_stream_solution(stream, &out.solution), OFC_STATUS_OK);
@@ -369,9 +369,9 @@ static void bad_streams(void **state)
     size_t n = 0;
 #define BAD(status, field, value)                                                                                      \
     (bad[n].params = params, bad[n].params.field = (value), bad[n++].expected = (status))
-    BAD(OFC_STATUS_INVALID_PARAMETER, smallest_share, -0.1);
-    BAD(OFC_STATUS_INVALID_PARAMETER, smallest_share, 1.1);
-    BAD(OFC_STATUS_INVALID_PARAMETER, smallest_share, NAN);
+    BAD(OFC_STATUS_INVALID_PARAMETER, min_inlier_ratio, -0.1);
+    BAD(OFC_STATUS_INVALID_PARAMETER, min_inlier_ratio, 1.1);
+    BAD(OFC_STATUS_INVALID_PARAMETER, min_inlier_ratio, NAN);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.lmeds.sample_size, 23);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.orientation_method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.shadow_rejection, 3);
@@ -397,7 +397,7 @@ static void sizes_and_defaults(void **state)
     memset(&out, 0, sizeof out);
     assert_int_equal(ofc_stream_params_default(&out.params), OFC_STATUS_OK);
     assert_int_equal(out.params.solve.lmeds.sample_size, 2048);
-    assert_true(out.params.smallest_share == 0.5);
+    assert_true(out.params.min_inlier_ratio == 0.5);
     assert_int_equal(out.params.refine_pixels, 16384);
     ofc_solve_params solve;
     memset(&solve, 0, sizeof solve);

@@ -102,7 +102,7 @@ static void angles_written(void **state)
     (void)state;
     const ofc_image image = ball_image();
     static uint8_t mask[PIXELS];
-    assert_int_equal(ofc_inliers_mark(&image, &solution.inliers, mask, NULL), OFC_STATUS_OK);
+    assert_int_equal(ofc_inlier_test_apply(&image, &solution.inlier_test, mask, NULL), OFC_STATUS_OK);
     memset(&out, PATTERN, sizeof out);
     assert_int_equal(ANGLES(&solution, out.angles, PADDED * sizeof(float)), OFC_STATUS_OK);
     for (int y = 0; y < HEIGHT; y++) {

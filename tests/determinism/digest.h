@@ -24,7 +24,7 @@ void mix_color_fit(const ofc_color_fit *fit);
 void mix_rank(const ofc_rank *rank);
 void mix_covariance(const ofc_covariance *covariance);
 void mix_location(const ofc_location *location);
-void mix_inliers(const ofc_inliers *inliers);
+void mix_inliers(const ofc_inlier_test *inliers);
 void mix_ellipsoid(const ofc_ellipsoid *ellipsoid);
 void mix_tilts(const ofc_tilts *tilts);
 void mix_slants(const ofc_slants *slants);

@@ -14,7 +14,7 @@ void mix_pixel_counts(const ofc_pixel_counts *pixel_counts)
     INTEGER(pixel_counts->dark);
     INTEGER(pixel_counts->saturated);
     INTEGER(pixel_counts->non_finite);
-    INTEGER(pixel_counts->shaded);
+    INTEGER(pixel_counts->shadowed);
     mix_floats(&pixel_counts->largest, 1);
 }
 
@@ -69,7 +69,7 @@ void mix_location(const ofc_location *location)
     NUMBER(location->dispersion);
 }
 
-void mix_inliers(const ofc_inliers *inliers)
+void mix_inliers(const ofc_inlier_test *inliers)
 {
     NUMBER(inliers->saturation);
     ARRAY(inliers->residual_form);
@@ -79,8 +79,8 @@ void mix_inliers(const ofc_inliers *inliers)
     NUMBER(inliers->norm_low);
     NUMBER(inliers->norm_high);
     for (int i = 0; i < 3; i++) {
-        mix_floats(inliers->shadow_faces[i].normal, 3);
-        mix_floats(&inliers->shadow_faces[i].least, 1);
+        mix_floats(inliers->shadow_planes[i].normal, 3);
+        mix_floats(&inliers->shadow_planes[i].threshold, 1);
     }
 }
 
@@ -114,7 +114,7 @@ void mix_slant_estimates(const ofc_slant_estimate slants[3])
     for (int c = 0; c < 3; c++) {
         NUMBER(slants[c].slant_rad);
         NUMBER(slants[c].statistic);
-        INTEGER(slants[c].reach);
+        INTEGER(slants[c].clamping);
         INTEGER(slants[c].reserved);
     }
 }
@@ -140,14 +140,14 @@ void mix_solution(const ofc_solution *solution)
     mix_color_fit(&solution->fit);
     mix_rank(&solution->rank);
     mix_location(&solution->norm_location);
-    mix_inliers(&solution->inliers);
+    mix_inliers(&solution->inlier_test);
     mix_ellipsoid(&solution->ellipsoid);
     mix_tilts(&solution->tilts);
     ARRAY(solution->slant_rad);
     ARRAY(solution->confidence.covariance);
     NUMBER(solution->confidence.error_rad);
     NUMBER(solution->confidence.convexity);
-    NUMBER(solution->confidence.second_best);
+    NUMBER(solution->confidence.log_likelihood_margin);
     INTEGER(solution->confidence.evidence);
     INTEGER(solution->confidence.reserved);
     for (int i = 0; i < OFC_MAX_CANDIDATES; i++)
@@ -207,7 +207,7 @@ void mix_orthogonal(const ofc_orthogonal *found)
 {
     mix_transformation(&found->chosen);
     mix_transformation(&found->twin);
-    NUMBER(found->clarity);
+    NUMBER(found->margin);
     mix_integrability(&found->integral);
     mix_integrability(&found->unpolished);
     INTEGER(found->choice);
@@ -216,7 +216,7 @@ void mix_orthogonal(const ofc_orthogonal *found)
 
 void mix_rendering(const ofc_rendering *rendering)
 {
-    NUMBER(rendering->largest);
+    NUMBER(rendering->largest_modulus);
     NUMBER(rendering->scale);
     ARRAY(rendering->f);
 }
@@ -228,7 +228,7 @@ void mix_region(const ofc_region *region)
     mix_rank(&region->rank);
     INTEGER(region->pixel_count);
     INTEGER(region->label);
-    INTEGERS(region->block);
+    INTEGERS(region->seed_block);
     INTEGER(region->spacing);
     INTEGER(region->reserved);
 }
@@ -236,7 +236,7 @@ void mix_region(const ofc_region *region)
 void mix_lmeds_params(const ofc_lmeds_params *params)
 {
     NUMBER(params->confidence);
-    NUMBER(params->outlier_share);
+    NUMBER(params->outlier_ratio);
     NUMBER(params->rejection);
     NUMBER(params->limits_confidence);
     NUMBER(params->saturation);
@@ -287,9 +287,9 @@ void mix_segment_params(const ofc_segment_params *params)
     mix_integer(params->seed);
     INTEGER(params->min_pixels);
     INTEGER(params->max_regions);
-    INTEGER(params->blocks);
+    INTEGER(params->seed_blocks);
     INTEGER(params->spacing);
-    INTEGER(params->reach);
+    INTEGER(params->search_radius);
     INTEGER(params->refits);
     INTEGERS(params->reserved);
 }
@@ -319,7 +319,7 @@ void mix_depth_result(const ofc_depth_result *result)
 
 void mix_drift(const ofc_stream_drift *drift)
 {
-    NUMBER(drift->inlier_share);
+    NUMBER(drift->inlier_ratio);
     ARRAY(drift->angle_rad);
     ARRAY(drift->strength_ratio);
     NUMBER(drift->dispersion_ratio);

@@ -5,7 +5,7 @@
 
 #include "board.h"
 
-uint64_t workspace[OFC_SIZE_OF_LARGER(OFC_SEGMENT_WORKSPACE_SIZE(WIDTH, HEIGHT), OFC_DEPTH_WORKSPACE_SIZE(WIDTH, HEIGHT)) /
+uint64_t workspace[OFC_LARGER(OFC_SEGMENT_WORKSPACE_SIZE(WIDTH, HEIGHT), OFC_DEPTH_WORKSPACE_SIZE(WIDTH, HEIGHT)) /
                    sizeof(uint64_t) + 1];
 const size_t workspace_bytes = sizeof workspace;
 float normals[PIXELS * 3];

@@ -14,7 +14,7 @@ void digest_rendering(void);
 /* The stages up to the ellipsoid, whose results the following ones take. */
 struct fitted {
     ofc_color_fit fit;
-    ofc_inliers inliers;
+    ofc_inlier_test inliers;
     ofc_ellipsoid ellipsoid;
     ofc_tilts tilts;
 };

@@ -23,22 +23,22 @@ void mix_fit(const ofc_image *image, struct fitted *fitted)
     for (int i = 0; i < 6; i++)
         form[i] = fitted->fit.coefficients[i].value;
     ofc_location location = {0};
-    ofc_inliers accepted = {0};
+    ofc_inlier_test accepted = {0};
     int32_t count = 0;
     mix_status(ofc_norm_location(image, form, &fitted->inliers, 2.5, workspace, workspace_bytes, &location,
                                  &accepted));
     mix_location(&location);
     mix_inliers(&accepted);
-    mix_status(ofc_inliers_mark(image, &accepted, marks, &count));
+    mix_status(ofc_inlier_test_apply(image, &accepted, marks, &count));
     mix_status(count);
     mix_bytes(marks, count > 0 ? image->width * image->height : 0);
-    mix_status(ofc_inliers_mark(image, NULL, marks, &count));
+    mix_status(ofc_inlier_test_apply(image, NULL, marks, &count));
     mix_status(count);
     mix_status(ofc_ellipsoid_decompose(form, &fitted->ellipsoid));
     mix_ellipsoid(&fitted->ellipsoid);
 }
 
-static void mix_tilt_estimates(const ofc_image *image, const ofc_inliers *inliers)
+static void mix_tilt_estimates(const ofc_image *image, const ofc_inlier_test *inliers)
 {
     static const int32_t steps[] = {1, 0, 0, 1, 2, 1, -1, 3};
     ofc_tilts tilts = {0};
@@ -57,7 +57,7 @@ static void mix_tilt_estimates(const ofc_image *image, const ofc_inliers *inlier
     mix_tilts(&tilts);
 }
 
-static void mix_slants_alone(const ofc_image *image, const ofc_inliers *inliers)
+static void mix_slants_alone(const ofc_image *image, const ofc_inlier_test *inliers)
 {
     static const ofc_slant_estimate nothing[3];
     ofc_slant_estimate slants[3] = {nothing[0], nothing[1], nothing[2]};
@@ -74,7 +74,7 @@ static void mix_slants_alone(const ofc_image *image, const ofc_inliers *inliers)
 
 void mix_lights(const ofc_image *image, struct fitted *fitted)
 {
-    const ofc_inliers *inliers[2] = {&fitted->inliers, NULL};
+    const ofc_inlier_test *inliers[2] = {&fitted->inliers, NULL};
     for (int i = 0; i < 2; i++) {
         mix_tilt_estimates(image, inliers[i]);
         mix_slants_alone(image, inliers[i]);

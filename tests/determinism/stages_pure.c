@@ -33,7 +33,7 @@ void digest_constants(void)
     mix_depth_params(&depth);
     mix_status(ofc_stream_params_default(&stream));
     mix_solve_params(&stream.solve);
-    mix_doubles(&stream.smallest_share, 1);
+    mix_doubles(&stream.min_inlier_ratio, 1);
     mix_integer(stream.refine_pixels);
     for (int32_t width = -1; width < 5000; width += 617)
         for (int32_t height = 1; height < 4000; height += 977) {
@@ -73,7 +73,7 @@ static void mix_constrained_slants(void)
     mix_status(ofc_constrained_slants_find(tilts, cosines, candidates, &count));
     for (int i = 0; i < count; i++)
         mix_slants(&candidates[i]);
-    mix_status(ofc_constrained_slants_nearest(tilts, cosines, &nearest));
+    mix_status(ofc_constrained_slants_least_squares(tilts, cosines, &nearest));
     mix_slants(&nearest);
     for (int branch = 1; branch <= 8; branch += 3) {
         mix_status(ofc_slant_curve_sample(tilts, cosines, branch, 33, along[0], f));

@@ -4,7 +4,7 @@
 
 void mix_methods(const ofc_image *image, const struct fitted *fitted)
 {
-    const ofc_inliers *inliers = &fitted->inliers;
+    const ofc_inlier_test *inliers = &fitted->inliers;
     const double *root = fitted->ellipsoid.root, *tilts = fitted->tilts.tilt_rad;
     ofc_annealing_params params;
     ofc_orthogonal found = {0};
@@ -26,7 +26,7 @@ void mix_methods(const ofc_image *image, const struct fitted *fitted)
     mix_slants(&slants);
     mix_status(ofc_integrability_integral(image, inliers, found.chosen.f_inverse, &integral));
     mix_integrability(&integral);
-    for (ofc_length length = OFC_LENGTH_UNIT; length <= OFC_LENGTH_KEPT; length++) {
+    for (ofc_normalization length = OFC_NORMALIZATION_UNIT; length <= OFC_NORMALIZATION_NONE; length++) {
         const ofc_status status = ofc_normals_from_matrix(image, inliers, found.chosen.f_inverse, length, normals,
                                                           WIDTH * 3 * sizeof(float));
         mix_status(status);
@@ -99,7 +99,7 @@ void mix_segments(const ofc_image *image, const struct fitted *fitted)
     int32_t count = 0;
     mix_status(ofc_segment_params_default(&params));
     params.min_pixels = 40;
-    params.blocks = 60;
+    params.seed_blocks = 60;
     params.refits = 3;
     params.max_regions = 3;
     mix_status(ofc_segment(image, &params, workspace, workspace_bytes, labels, regions, &count));

@@ -5,6 +5,7 @@ pub mod bust;
 pub mod call_graph;
 pub mod depth_maps;
 pub mod depth_oracle;
+pub mod header_text;
 pub mod linear;
 pub mod linear_scenes;
 pub mod lit_reliefs;
