@@ -1,7 +1,9 @@
 //! The last passes of a cold start with the joint method, and what a frame makes of its answer.
 
-use super::cold::keep_window;
-use super::{Held, Memory, Pass, State, rows_len};
+use super::kept_row::keep_window;
+use super::memory::{Memory, rows_len};
+use super::pass::Pass;
+use super::state::{Held, State};
 use crate::math::mat3::{self, Mat3};
 use crate::orientation::joint::{CellSums, STRIP};
 use crate::picture::{Image, Window};

@@ -1,6 +1,7 @@
 //! Normals and inliers of one row.
 
-use super::{State, StreamError};
+use super::pass::StreamError;
+use super::state::State;
 use crate::orientation::matrix::Orientation;
 use crate::picture::{Image, for_each_bit};
 use crate::solve::Outcome;

@@ -5,12 +5,17 @@
 //! of inliers these add up to the difference between its ends, however far the rows lie apart. As others are looked at in
 //! every frame, the differences of about n frames are averaged. Of the slants
 //! that agree with both those nearest to the old ones are taken. The dispersion grows or shrinks with the deviation of
-//! the inliers' residuals: as it was truncated before, so it is now. with the joint method the orthogonal transformation is kept,
+//! the inliers' residuals: as it was truncated before, so it is now. With the joint method the orthogonal transformation is kept,
 //! as far as the new C lets it.
 
-use super::cold::{keep_window, kept, slants_of};
+use super::cold::slants_of;
+use super::drift::{Change, Drift};
+use super::kept_row::{keep_window, kept};
+use super::memory::Memory;
 use super::orientation::nearest_rows;
-use super::{FULL, Memory, Pass, State};
+use super::parameters::FULL;
+use super::pass::Pass;
+use super::state::State;
 use crate::color::ellipsoid::{self, Coefficients};
 use crate::color::inliers::{Band, Inliers};
 use crate::color::lmeds::{MIN_PIXELS, Refit};
@@ -21,26 +26,6 @@ use crate::math::mat3::{self, Mat3};
 use crate::picture::{Image, PixelCounts, Window, for_each_bit};
 use crate::solve::{SMALLEST_NOISE_MARGIN, orient, oriented};
 use libm::{atan2, sqrt};
-
-/// What a frame says of the model from before it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drift {
-    /// The share of usable pixels that the old model's residuals accept.
-    pub inlier_share: f64,
-    /// What changed; `None` where there is no new model, and the next pass is over colors.
-    pub change: Option<Change>,
-}
-
-/// From one model to the next.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Change {
-    /// The angles between the old and the new rows of F, in radians.
-    pub angles: [f64; 3],
-    /// The lengths of the new rows of F over those of the old.
-    pub strengths: [f64; 3],
-    /// The dispersion of the new residuals over that of the old.
-    pub dispersion: f64,
-}
 
 impl State {
     /// What the last frame that a model was refined with says of it; `None` before the first and after a cold start.
