@@ -8,7 +8,8 @@
 //! ```
 //!
 //! [`roots()`] finds every solution with slants in [0, pi/2], [`least_squares()`] the slants that come closest when there
-//! is none, and [`curve()`] is what the paper's Figures 2 and 4(a) plot. Pairs of channels are in the order 12, 13, 23
+//! is none, and [`curve()`] is what the paper's Figures 2 and 4(a) plot: eqs. 25, each of which has two signs. How their eight
+//! cases are numbered says [`SlantRoot::branch`], with a table in `branch.rs`. Pairs of channels are in the order 12, 13, 23
 //! everywhere.
 //!
 //! There are at most four isolated solutions: as equations in tan(s/2), (24) has sixteen complex solutions, and of the
@@ -17,6 +18,7 @@
 //! # Reference
 //! Sections 3.2-3.3, eqs. 24-25.
 
+mod branch;
 mod cell;
 mod curve;
 mod descent;
@@ -42,8 +44,9 @@ pub const MAX_CANDIDATES: usize = 8;
 pub struct SlantRoot {
     /// The slants of the three channels, in [0, pi/2], radians.
     pub slants: [f64; 3],
-    /// The paper's case 1..=8: the signs that eqs. 25a, 25b, 25c take here, (+,+,+) being 1, (+,+,-) 2, (-,-,-) 8.
-    /// A sign is + where the square root is zero, since both are right there.
+    /// Which of the eight cases of eqs. 25 this is, by the signs that the square roots of 25a, 25b and 25c have here:
+    /// 1 is (+,+,+), 2 (+,+,-), 3 (+,-,+), 4 (+,-,-), 5 (-,+,+), 6 (-,+,-), 7 (-,-,+) and 8 (-,-,-). A sign is + where
+    /// the square root is zero, since both are right there.
     pub branch: u8,
     /// The largest absolute difference between the two sides of eqs. 24.
     pub residual: f64,

@@ -1,6 +1,7 @@
 //! The fixed-point curves of eqs. 25.
 
 use super::Constraints;
+use super::branch::{case, signs};
 use crate::math::angle::sincos;
 use libm::{atan, sqrt};
 
@@ -19,7 +20,7 @@ pub struct CurvePoint {
 /// One of the eight cases of eqs. 25 at sigma1: from slant 1 follows slant 2 (25a), from it slant 3 (25b), from it
 /// slant 1 again (25c). Where f(sigma1) = sigma1 there is a solution of eqs. 24, of use if all its slants are slants.
 ///
-/// Case 1 is (+,+,+), case 2 (+,+,-), case 8 (-,-,-): the signs of 25a, 25b, 25c.
+/// The cases are those of [`SlantRoot::branch`](super::SlantRoot::branch).
 ///
 /// # Units
 /// Radians; `cosines` are (h12, h13, h23).
@@ -32,14 +33,11 @@ pub struct CurvePoint {
 /// Eqs. 25a-25c, Figures 2, 4(a), 6(d).
 #[must_use]
 pub fn curve(branch: u8, sigma1: f64, tilts: [f64; 3], cosines: [f64; 3]) -> Option<CurvePoint> {
-    if !(1..=8).contains(&branch) || !sigma1.is_finite() {
-        return None;
-    }
+    let [sign12, sign23, sign31] = signs(branch).filter(|_| sigma1.is_finite())?;
     let Constraints { k: [k12, k13, k23], h: [h12, h13, h23] } = Constraints::new(tilts, cosines)?;
-    let sign = |bit: u8| if (branch - 1) & bit == 0 { 1.0 } else { -1.0 };
-    let sigma2 = next_slant(sigma1, k12, h12, sign(4))?;
-    let sigma3 = next_slant(sigma2, k23, h23, sign(2))?;
-    let f = next_slant(sigma3, k13, h13, sign(1))?;
+    let sigma2 = next_slant(sigma1, k12, h12, sign12)?;
+    let sigma3 = next_slant(sigma2, k23, h23, sign23)?;
+    let f = next_slant(sigma3, k13, h13, sign31)?;
     Some(CurvePoint { slants: [sigma1, sigma2, sigma3], f })
 }
 
@@ -60,8 +58,7 @@ fn next_slant(slant: f64, k: f64, h: f64, sign: f64) -> Option<f64> {
 /// The case of eqs. 25 on whose curve these slants lie.
 pub(super) fn branch_of([s1, s2, s3]: [f64; 3], constraints: &Constraints) -> u8 {
     let Constraints { k: [k12, k13, k23], h: [h12, h13, h23] } = *constraints;
-    let bit = |from: f64, to: f64, k: f64, h: f64| u8::from(is_minus(from, to, k, h));
-    1 + 4 * bit(s1, s2, k12, h12) + 2 * bit(s2, s3, k23, h23) + bit(s3, s1, k13, h13)
+    case([is_minus(s1, s2, k12, h12), is_minus(s2, s3, k23, h23), is_minus(s3, s1, k13, h13)])
 }
 
 /// Whether the square root enters with a minus: it is tan(to/2) (cos from + h) - k sin from.
