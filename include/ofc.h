@@ -818,8 +818,8 @@ typedef int32_t ofc_slant_clamping;
 /// The slant of one channel's light, as an estimator sees it without help from the other channels.
 typedef struct ofc_slant_estimate {
     double slant_rad; ///< From +z.
-    /// What it was computed from: the cosine for Pentland, root mean square over mean for Lee and Rosenfeld, mean over
-    /// root mean square for Zheng and Chellappa.
+    /// What it was computed from: for Pentland the squared sine of the slant by eq. 22, which may be above 1; for Lee and
+    /// Rosenfeld root mean square over mean; for Zheng and Chellappa mean over root mean square.
     double statistic;
     ofc_slant_clamping clamping; ///< Whether the method's equation has a root, one of OFC_SLANT_*_CLAMPED.
     uint32_t reserved;           ///< Zero.

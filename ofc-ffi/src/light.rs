@@ -57,8 +57,8 @@ pub struct ofc_disc {
 pub struct ofc_slant_estimate {
     /// From +z.
     pub slant_rad: f64,
-    /// What it was computed from: the cosine for Pentland, root mean square over mean for Lee and Rosenfeld, mean over
-    /// root mean square for Zheng and Chellappa.
+    /// What it was computed from: for Pentland the squared sine of the slant by eq. 22, which may be above 1; for Lee and
+    /// Rosenfeld root mean square over mean; for Zheng and Chellappa mean over root mean square.
     pub statistic: f64,
     /// Whether the method's equation has a root, one of OFC_SLANT_*_CLAMPED.
     pub clamping: ofc_slant_clamping,

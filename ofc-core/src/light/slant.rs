@@ -25,7 +25,8 @@ pub enum Reach {
 pub struct Estimate {
     /// The slant in radians.
     pub slant: f64,
-    /// What it was computed from, as the method defines it.
+    /// What it was computed from, as the method defines it: a squared sine for Pentland (eq. 22), the ratio of root mean square
+    /// to mean for Lee and Rosenfeld, the ratio of mean to root mean square for Zheng and Chellappa.
     pub statistic: f64,
     /// Whether the method's equation has a root.
     pub reach: Reach,

@@ -1,5 +1,9 @@
 //! Student's t distribution: two-sided p values and the quantile behind confidence limits.
 //!
+//! The ratio of gamma functions is a series of its own: as a difference of `libm`'s `lgamma` it loses digits, 3e-9 of p instead
+//! of 2e-10 at a million degrees of freedom. `lgamma`, with `erfc` in place of the fraction for larger samples, would also
+//! take 2,664 bytes of a firmware that has 65,536.
+//!
 //! # Reference
 //! M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions", 26.7.1 and 26.5.8 (the continued fraction of
 //! the incomplete beta function, evaluated by Lentz's method) and 6.1.47 (the asymptotic series of a ratio of gammas).
@@ -134,6 +138,30 @@ mod tests {
         let cauchy = 1.0 - 2.0 * libm::atan(3.0) / core::f64::consts::PI;
         assert!((two_sided_p(3.0, 1.0) - cauchy).abs() < 1e-14);
         assert!((two_sided_p(-3.0, 1.0) - cauchy).abs() < 1e-14);
+    }
+
+    #[test]
+    fn as_forty_digits_have_them() {
+        // The regularised incomplete beta function by mpmath with forty digits.
+        for (degrees, t, p, tolerance) in [
+            (1.0, 0.1, 0.936_548_965_138_892_9, 1e-14),
+            (1.0, 1.5, 0.374_334_083_621_997_6, 1e-14),
+            (1.0, 6.0, 0.105_136_913_422_506_9, 1e-14),
+            (2.5, 0.1, 0.927_806_544_062_489_6, 1e-14),
+            (2.5, 6.0, 0.015_281_729_885_522_9, 1e-14),
+            (7.0, 0.1, 0.923_148_059_604_792_4, 1e-14),
+            (7.0, 6.0, 5.422_583_420_028_101e-4, 1e-14),
+            (100.0, 1.5, 0.136_765_058_124_688_9, 1e-12),
+            (100.0, 6.0, 3.172_491_502_802_857e-8, 1e-12),
+            (9994.0, 1.5, 0.133_645_990_776_185_6, 1e-12),
+            (9994.0, 6.0, 2.041_660_169_652_388e-9, 1e-12),
+            (1e6, 0.1, 0.920_344_345_492_043_2, 5e-10),
+            (1e6, 1.5, 0.133_614_718_236_792_8, 5e-10),
+            (1e6, 6.0, 1.973_849_812_354_435e-9, 5e-10),
+        ] {
+            let found = two_sided_p(t, degrees);
+            assert!((found / p - 1.0).abs() < tolerance, "{degrees} {t}: {found} {p}");
+        }
     }
 
     #[test]
