@@ -77,7 +77,7 @@ typedef int32_t ofc_pixel_format;
 #define OFC_PIXEL_BGRA32F 24   ///< As OFC_PIXEL_BGRA8 with 32-bit floats.
 #define OFC_PIXEL_PLANES32F 25 ///< As OFC_PIXEL_PLANES8 with 32-bit floats.
 
-/// A picture in the caller's memory, row 0 at the top. Initialise all of it: fields not set must be zero.
+/// A picture in the caller's memory, row 0 at the top. Initialize all of it: fields not set must be zero.
 ///
 /// Pixels may have any alignment and rows any stride of at least a row. A call reads the bytes from the first pixel to
 /// the last, and nobody may write them meanwhile.
@@ -161,7 +161,7 @@ typedef struct ofc_depth_params ofc_depth_params;
 /// How ofc_depth_integrate() went.
 typedef struct ofc_depth_result ofc_depth_result;
 
-/// What is integrated. Initialise all of it: fields not set must be zero. Row 0 is at the top, floats and their strides
+/// What is integrated. Initialize all of it: fields not set must be zero. Row 0 is at the top, floats and their strides
 /// are aligned to four bytes; the stride of a map that is NULL does not matter.
 typedef struct ofc_depth_input {
     /// (x, y, z) floats a pixel: x right, y up, z toward the camera, of any length. NULL when p and q are given. A normal
@@ -231,7 +231,7 @@ const char *ofc_status_message(ofc_status status);
 /// C is not positive definite: the colors do not lie on an ellipsoid. The normals span fewer than three dimensions,
 /// or the surface is not uniform, or not matte, or lit differently from place to place.
 #define OFC_STATUS_NOT_POSITIVE_DEFINITE 2
-/// The mean gradient of a channel is zero, or no two inliers are neighbours: there is no tilt.
+/// The mean gradient of a channel is zero, or no two inliers are neighbors: there is no tilt.
 #define OFC_STATUS_NO_TILT 3
 #define OFC_STATUS_NO_CONSISTENT_SLANTS 4 ///< No slants agree with the tilts and the angles between the rows of F.
 /// An iteration ended before it reached its tolerance; the result is what it had reached.
@@ -249,7 +249,7 @@ const char *ofc_status_message(ofc_status status);
 #define OFC_STATUS_WORKSPACE_TOO_SMALL (-23) ///< The workspace is smaller than its size function says.
 #define OFC_STATUS_UNKNOWN_FORMAT (-30)      ///< A pixel format is none of OFC_PIXEL_*.
 #define OFC_STATUS_INVALID_PARAMETER (-31)   ///< A parameter is out of its range, or an input number is not finite.
-/// A reserved field is not zero: use the `_default` call, or initialise the whole struct.
+/// A reserved field is not zero: use the `_default` call, or initialize the whole struct.
 #define OFC_STATUS_RESERVED_NOT_ZERO (-32)
 /// The solution handed in holds no F: the solve that made it did not return OFC_STATUS_OK.
 #define OFC_STATUS_NOT_SOLVED (-33)
@@ -386,7 +386,7 @@ typedef struct ofc_estimate {
 /// The color-space quadratic form rho^T C rho = 1 (eqs. 9-12). Coefficients are in the order c11, c22, c33, c12, c13,
 /// c23 and in (pixel value)^-2.
 typedef struct ofc_color_fit {
-    double robust[6];             ///< The C that minimises the median squared residual.
+    double robust[6];             ///< The C that minimizes the median squared residual.
     double median_residual;       ///< Square root of that median, over all usable pixels.
     double dispersion;            ///< Robust dispersion s0 of eq. 12.
     double r_squared;             ///< Robust coefficient of determination, 1 - median_residual^2.
@@ -726,7 +726,7 @@ ofc_status ofc_location_fit(const float *values, size_t count, void *workspace, 
 
 /* ---- Light: tilts, slants and strengths ------------------------------------------------------------------------- */
 
-/// Pentland's tilts of the three channels' equivalent lights, from mean differences between neighbouring inliers along
+/// Pentland's tilts of the three channels' equivalent lights, from mean differences between neighboring inliers along
 /// the axes and diagonals; for a closed convex surface.
 ///
 /// @param image    The picture.
@@ -761,7 +761,7 @@ ofc_status ofc_tilt_pentland_along(const ofc_image *image, const ofc_inlier_test
 /// Reference: section 3.2; C.-H. Lee, A. Rosenfeld, Artificial Intelligence 26, 1985.
 ofc_status ofc_tilt_lee_rosenfeld(const ofc_image *image, const ofc_inlier_test *inliers, ofc_tilts *tilts);
 
-/// Zheng and Chellappa's tilts: every neighbourhood votes with the direction of its own gradient.
+/// Zheng and Chellappa's tilts: every neighborhood votes with the direction of its own gradient.
 ///
 /// @param image    The picture.
 /// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
@@ -1013,7 +1013,7 @@ ofc_status ofc_annealing_params_default(ofc_annealing_params *params);
 /// @return The size, or 0 when an argument is invalid.
 size_t ofc_orthogonal_annealing_workspace_size(int32_t width, int32_t height, const ofc_annealing_params *params);
 
-/// The orthogonal transformation that minimises the integral (15) over O(3), by seeded simulated annealing on a sample of
+/// The orthogonal transformation that minimizes the integral (15) over O(3), by seeded simulated annealing on a sample of
 /// cells and a polish on the whole picture.
 ///
 /// @param image      The picture.
@@ -1067,7 +1067,7 @@ ofc_status ofc_constrained_slants_integrable(const ofc_image *image, const ofc_i
 typedef int32_t ofc_normalization;
 
 #define OFC_NORMALIZATION_UNIT 0 ///< Set to 1.
-#define OFC_NORMALIZATION_NONE 1 ///< As the color gives it: near 1 where the model holds.
+#define OFC_NORMALIZATION_NONE 1 ///< The length that the color gives: near 1 where the model holds.
 
 /// Normals n = F^-1 rho of the pixels that a test accepts, with any F.
 ///
@@ -1120,14 +1120,14 @@ ofc_status ofc_solution_covariance(const ofc_solution *solution, ofc_covariance 
 ofc_status ofc_normals_uncertainty(const ofc_image *image, const ofc_solution *solution, float *angle_rad,
                                    size_t angle_stride_bytes);
 
-/// A depth map in the caller's memory, row 0 at the top, depth growing toward the camera. Initialise all of it: fields
+/// A depth map in the caller's memory, row 0 at the top, depth growing toward the camera. Initialize all of it: fields
 /// not set must be zero.
 typedef struct ofc_depth_map {
     const float *depth;       ///< A depth a pixel, in the unit of pixel_pitch; finite inside the mask.
     int32_t width;            ///< Pixels in a row, at least 1.
     int32_t height;           ///< Rows, at least 1.
     size_t row_stride_bytes;  ///< Bytes from a row to the next, a multiple of 4.
-    double pixel_pitch;       ///< Distance between neighbouring pixels, in [1e-30, 1e30].
+    double pixel_pitch;       ///< Distance between neighboring pixels, in [1e-30, 1e30].
     const uint8_t *mask;      ///< NULL, or a byte a pixel: there is no surface where it is zero.
     size_t mask_stride_bytes; ///< Bytes from a row of the mask to the next; without a mask it does not matter.
 } ofc_depth_map;
@@ -1178,7 +1178,7 @@ typedef struct ofc_rendering {
 /// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
 ofc_status ofc_render_params_default(ofc_render_params *params);
 
-/// Renders a depth map under coloured lights: eq. 5 with attached and cast shadows, scaling, noise and quantisation.
+/// Renders a depth map under colored lights: eq. 5 with attached and cast shadows, scaling, noise and quantization.
 ///
 /// A pixel sees light i if a_i . n > 0 and, with cast shadows, no part of the surface is in the way. Normals are central
 /// differences of the depth, one-sided at the borders of the picture and the mask.
@@ -1288,7 +1288,7 @@ typedef struct ofc_stream ofc_stream;
 
 /// What a stream does. Set by ofc_stream_params_default().
 typedef struct ofc_stream_params {
-    /// As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
+    /// The parameters of ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
     /// tilt_estimator is OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
     /// OFC_FALLBACK_LEAST_SQUARES. A library built without the feature `full-streams`, for small memories, knows
     /// OFC_ORIENTATION_DIRECT without shadow rejection alone, and this method is then the default.
@@ -1443,7 +1443,7 @@ ofc_status ofc_stream_drift_get(ofc_stream *stream, ofc_stream_drift *drift);
 /// Reference: eq. 8.
 ofc_status ofc_stream_normals_row(ofc_stream *stream, const ofc_image *row, float *normals);
 
-/// As ofc_stream_normals_row(), in 8 bits a component.
+/// Writes what ofc_stream_normals_row() writes, in 8 bits a component.
 ///
 /// @param stream   The stream.
 /// @param row      A picture of height 1.
@@ -1580,7 +1580,7 @@ ofc_status ofc_rank_patches(const ofc_image *image, int32_t side, double noise, 
 /// The version of the library that is running: major * 10000 + minor * 100 + patch, to be compared with OFC_VERSION.
 uint32_t ofc_version(void);
 
-/// The same as text, in static storage.
+/// The version as text, in static storage.
 const char *ofc_version_string(void);
 
 #define OFC_VERSION_MAJOR 0 ///< The first number of the version of this header.

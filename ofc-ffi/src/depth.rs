@@ -24,7 +24,7 @@ pub const OFC_DEPTH_PAPER: i32 = 1;
 /// fitted to these slopes over the whole mask.
 pub const OFC_DEPTH_COUPLED: i32 = 2;
 
-/// What is integrated. Initialise all of it: fields not set must be zero. Row 0 is at the top, floats and their strides
+/// What is integrated. Initialize all of it: fields not set must be zero. Row 0 is at the top, floats and their strides
 /// are aligned to four bytes; the stride of a map that is NULL does not matter.
 #[repr(C)]
 #[derive(Clone, Copy)]

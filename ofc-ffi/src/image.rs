@@ -44,7 +44,7 @@ pub const OFC_PIXEL_BGRA32F: i32 = 24;
 /// As OFC_PIXEL_PLANES8 with 32-bit floats.
 pub const OFC_PIXEL_PLANES32F: i32 = 25;
 
-/// A picture in the caller's memory, row 0 at the top. Initialise all of it: fields not set must be zero.
+/// A picture in the caller's memory, row 0 at the top. Initialize all of it: fields not set must be zero.
 ///
 /// Pixels may have any alignment and rows any stride of at least a row. A call reads the bytes from the first pixel to
 /// the last, and nobody may write them meanwhile.

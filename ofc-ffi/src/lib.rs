@@ -3,7 +3,7 @@
 #![no_std]
 #![allow(non_camel_case_types)] // The names are C's.
 #![allow(clippy::missing_safety_doc)] // The documentation is for C callers: every call says what it needs.
-#![allow(clippy::doc_markdown)] // As above: names are not Rust links.
+#![allow(clippy::doc_markdown)] // Comments are written for C: names are not Rust links.
 
 mod check;
 mod depth;

@@ -96,7 +96,7 @@ fn alone(tilts: [f64; 3]) -> Tilts {
     Tilts { tilts, gradients: [[0.0; 2]; 3] }
 }
 
-/// Pentland's tilts of the three channels' equivalent lights, from mean differences between neighbouring inliers along
+/// Pentland's tilts of the three channels' equivalent lights, from mean differences between neighboring inliers along
 /// the axes and diagonals; for a closed convex surface.
 ///
 /// @param image    The picture.
@@ -169,7 +169,7 @@ pub unsafe extern "C" fn ofc_tilt_lee_rosenfeld(
     })
 }
 
-/// Zheng and Chellappa's tilts: every neighbourhood votes with the direction of its own gradient.
+/// Zheng and Chellappa's tilts: every neighborhood votes with the direction of its own gradient.
 ///
 /// @param image    The picture.
 /// @param inliers  The pixels to use; NULL for every usable pixel of the picture.

@@ -19,7 +19,7 @@ use ofc_core::surface::normals::{self, Length};
 pub type ofc_normalization = i32;
 /// Set to 1.
 pub const OFC_NORMALIZATION_UNIT: i32 = 0;
-/// As the color gives it: near 1 where the model holds.
+/// The length that the color gives: near 1 where the model holds.
 pub const OFC_NORMALIZATION_NONE: i32 = 1;
 
 constants!(Length = { Unit: OFC_NORMALIZATION_UNIT, Kept: OFC_NORMALIZATION_NONE });

@@ -127,7 +127,7 @@ pub unsafe extern "C" fn ofc_orthogonal_annealing_workspace_size(
     })
 }
 
-/// The orthogonal transformation that minimises the integral (15) over O(3), by seeded simulated annealing on a sample of
+/// The orthogonal transformation that minimizes the integral (15) over O(3), by seeded simulated annealing on a sample of
 /// cells and a polish on the whole picture.
 ///
 /// @param image      The picture.

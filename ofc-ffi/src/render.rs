@@ -16,7 +16,7 @@ use ofc_core::render::{self, Canvas, DepthMap, Lights, Outputs, Params, Rows};
 pub const OFC_MAX_LIGHTS: usize = 32;
 const _: () = assert!(OFC_MAX_LIGHTS == render::MAX_LIGHTS, "the header says what the core does");
 
-/// A depth map in the caller's memory, row 0 at the top, depth growing toward the camera. Initialise all of it: fields
+/// A depth map in the caller's memory, row 0 at the top, depth growing toward the camera. Initialize all of it: fields
 /// not set must be zero.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -29,7 +29,7 @@ pub struct ofc_depth_map {
     pub height: i32,
     /// Bytes from a row to the next, a multiple of 4.
     pub row_stride_bytes: usize,
-    /// Distance between neighbouring pixels, in [1e-30, 1e30].
+    /// Distance between neighboring pixels, in [1e-30, 1e30].
     pub pixel_pitch: f64,
     /// NULL, or a byte a pixel: there is no surface where it is zero.
     pub mask: *const u8,
@@ -97,7 +97,7 @@ pub unsafe extern "C" fn ofc_render_params_default(params: *mut ofc_render_param
     })
 }
 
-/// Renders a depth map under coloured lights: eq. 5 with attached and cast shadows, scaling, noise and quantisation.
+/// Renders a depth map under colored lights: eq. 5 with attached and cast shadows, scaling, noise and quantization.
 ///
 /// A pixel sees light i if a_i . n > 0 and, with cast shadows, no part of the surface is in the way. Normals are central
 /// differences of the depth, one-sided at the borders of the picture and the mask.

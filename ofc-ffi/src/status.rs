@@ -27,7 +27,7 @@ pub const OFC_STATUS_RANK_DEFICIENT: i32 = 1;
 /// C is not positive definite: the colors do not lie on an ellipsoid. The normals span fewer than three dimensions,
 /// or the surface is not uniform, or not matte, or lit differently from place to place.
 pub const OFC_STATUS_NOT_POSITIVE_DEFINITE: i32 = 2;
-/// The mean gradient of a channel is zero, or no two inliers are neighbours: there is no tilt.
+/// The mean gradient of a channel is zero, or no two inliers are neighbors: there is no tilt.
 pub const OFC_STATUS_NO_TILT: i32 = 3;
 /// No slants agree with the tilts and the angles between the rows of F.
 pub const OFC_STATUS_NO_CONSISTENT_SLANTS: i32 = 4;
@@ -57,7 +57,7 @@ pub const OFC_STATUS_WORKSPACE_TOO_SMALL: i32 = -23;
 pub const OFC_STATUS_UNKNOWN_FORMAT: i32 = -30;
 /// A parameter is out of its range, or an input number is not finite.
 pub const OFC_STATUS_INVALID_PARAMETER: i32 = -31;
-/// A reserved field is not zero: use the `_default` call, or initialise the whole struct.
+/// A reserved field is not zero: use the `_default` call, or initialize the whole struct.
 pub const OFC_STATUS_RESERVED_NOT_ZERO: i32 = -32;
 /// The solution handed in holds no F: the solve that made it did not return OFC_STATUS_OK.
 pub const OFC_STATUS_NOT_SOLVED: i32 = -33;
@@ -110,8 +110,8 @@ fn message(status: ofc_status) -> &'static CStr {
         OFC_STATUS_TOO_FEW_PIXELS => c"too few usable pixels",
         OFC_STATUS_DARK => c"too few usable pixels: most are black",
         OFC_STATUS_SATURATED => c"too few usable pixels: most are saturated",
-        OFC_STATUS_NO_CELLS => c"no cell of four neighbouring inliers",
-        OFC_STATUS_NO_STREAM => c"no stream is initialised at this address",
+        OFC_STATUS_NO_CELLS => c"no cell of four neighboring inliers",
+        OFC_STATUS_NO_STREAM => c"no stream is initialized at this address",
         OFC_STATUS_NO_FRAME => c"no frame was begun",
         OFC_STATUS_ROW_ORDER => c"a row is out of order",
         OFC_STATUS_TOO_MANY_ROWS => c"the frame has all its rows",

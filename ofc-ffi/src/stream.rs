@@ -33,7 +33,7 @@ pub const OFC_PASS_INTEGRABILITY: i32 = 6;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_stream_params {
-    /// As for ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
+    /// The parameters of ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
     /// tilt_estimator is OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
     /// OFC_FALLBACK_LEAST_SQUARES. A library built without the feature `full-streams`, for small memories, knows
     /// OFC_ORIENTATION_DIRECT without shadow rejection alone, and this method is then the default.
@@ -391,7 +391,7 @@ pub unsafe extern "C" fn ofc_stream_normals_row(
     unsafe { Contract::kept() }.call(|call| write_row(call, stream, row, normals, 3, State::normals))
 }
 
-/// As ofc_stream_normals_row(), in 8 bits a component.
+/// Writes what ofc_stream_normals_row() writes, in 8 bits a component.
 ///
 /// @param stream   The stream.
 /// @param row      A picture of height 1.

@@ -217,7 +217,7 @@ impl FromC<ofc_inlier_test> for Inliers {
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_color_fit {
-    /// The C that minimises the median squared residual.
+    /// The C that minimizes the median squared residual.
     pub robust: [f64; 6],
     /// Square root of that median, over all usable pixels.
     pub median_residual: f64,

@@ -22,7 +22,7 @@ pub extern "C" fn ofc_version() -> u32 {
     VERSION
 }
 
-/// The same as text, in static storage.
+/// The version as text, in static storage.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_version_string() -> *const c_char {
     const TEXT: &CStr = match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {

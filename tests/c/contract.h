@@ -14,7 +14,7 @@
 
 enum { WIDTH = 90, HEIGHT = 80, PIXELS = WIDTH * HEIGHT };
 
-/* A ball under three coloured lights, 8-bit RGB, black around it. */
+/* A ball under three colored lights, 8-bit RGB, black around it. */
 extern uint8_t ball[HEIGHT][WIDTH][3];
 void render_ball(void);
 ofc_image ball_image(void);

@@ -48,7 +48,7 @@ impl Entry {
     }
 }
 
-/// Entries one below the other, short comments behind their code, in one column as far as neighbours have them there.
+/// Entries one below the other, short comments behind their code, in one column as far as neighbors have them there.
 fn table(entries: &[Entry]) -> String {
     let mut text = String::new();
     let mut rest = entries;
