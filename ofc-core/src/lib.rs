@@ -83,13 +83,15 @@
 //! | 2.4 | a surface and its convex/concave twin | [`orientation::orthogonal::TwinChoice`] | `orientation/orthogonal.rs` |
 //! | eqs. 17, 18: `f_i`, F F^T = C^-1 | lengths and angles of the rows of F | [`decompose`](color::ellipsoid::decompose) | `color/ellipsoid.rs` |
 //! | eq. 19 | a direction from slant and tilt | [`orientation::matrix::direction`] | `orientation/matrix.rs` |
-//! | eqs. 20, 21: tau | Pentland's tilt | [`light::tilt::pentland`] | `light/tilt/pentland.rs` |
+//! | eq. 20 | the mean gradient, by regression | `gradient` | `light/gradient.rs` |
+//! | eq. 21: tau | Pentland's tilt | [`light::tilt::pentland`] | `light/tilt/pentland.rs` |
 //! | \[19\], \[20\], \[22\] | the other tilts | [`light::tilt`] | `light/tilt/` |
 //! | eq. 22 | Pentland's slant | [`light::slant::pentland`] | `light/slant/pentland.rs` |
 //! | eq. 23 | Lee and Rosenfeld's slant | [`light::slant::lee_rosenfeld`] | `light/slant/lee_rosenfeld.rs` |
 //! | eq. 24: `k_ij`, `h_ij` | what tilts and angles say of the slants | [`light::constrained_slant`] | `light/constrained_slant.rs` |
 //! | eq. 24 | all its solutions | [`roots()`](light::constrained_slant::roots()) | `light/constrained_slant/roots.rs` |
-//! | eqs. 25, cases 1-8 | the curves of Figures 2 and 4, and the numbers of their branches | [`curve()`](light::constrained_slant::curve()) | `light/constrained_slant/curve.rs` |
+//! | eqs. 25 | the curves of Figures 2 and 4 | [`curve()`](light::constrained_slant::curve()) | `light/constrained_slant/curve.rs` |
+//! | eqs. 25, cases 1-8 | the numbers of the branches | [`SlantRoot::branch`](light::constrained_slant::SlantRoot::branch) | `light/constrained_slant/branch.rs` |
 //! | 3.3 | what to do without a solution | [`SlantFallback`](solve::SlantFallback) | `solve/fallback.rs`, `orientation/orthogonal/tilts_given.rs` |
 //! | 3.4, steps 1-8 | the whole pipeline | [`solve()`] | `solve.rs` |
 //! | 4 | channel maxima instead of norms | [`light::channel_maxima`] | `light/channel_maxima.rs` |

@@ -20,7 +20,7 @@ pub enum SlantSource {
     LeeRosenfeld,
     /// There is no root: Zheng and Chellappa's slants.
     ZhengChellappa,
-    /// F was oriented as a whole ([`OrientationMethod::Joint`]): its slants follow from it.
+    /// F was oriented as a whole ([`OrientationMethod::Joint`](super::OrientationMethod::Joint)): its slants follow from it.
     Joint,
 }
 
