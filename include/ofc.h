@@ -342,6 +342,14 @@ typedef int32_t ofc_shadow_rejection;
 #define OFC_SHADOW_REJECTION_ON 1  ///< On, whatever the method.
 #define OFC_SHADOW_REJECTION_OFF 2 ///< Off, whatever the method.
 
+/// Where the lengths of the rows of F, the strengths of the channels' lights, come from: one of OFC_NORMS_*.
+typedef int32_t ofc_norm_source;
+
+#define OFC_NORMS_FIT 0 ///< From C, eq. 18.
+/// They are the largest value of each channel over the inliers, as of ofc_channel_maxima(). Slants do not change with it, the
+/// lengths of the normals do (section 4).
+#define OFC_NORMS_CHANNEL_MAXIMA 1
+
 /// What ofc_solve() does. Set by ofc_solve_params_default().
 struct ofc_solve_params {
     ofc_lmeds_params lmeds; ///< The regression in color space, with the seed and the saturation level.
@@ -356,7 +364,10 @@ struct ofc_solve_params {
     /// Whether colors that one of the lights does not reach are left out, one of OFC_SHADOW_REJECTION_*. Default
     /// OFC_SHADOW_REJECTION_AUTO.
     ofc_shadow_rejection shadow_rejection;
-    uint32_t reserved[4]; ///< Must be zero.
+    /// Where the lengths of the rows of F come from, with the direct method; one of OFC_NORMS_*. Streams take OFC_NORMS_FIT
+    /// alone. Default OFC_NORMS_FIT.
+    ofc_norm_source norm_source;
+    uint32_t reserved[3]; ///< Must be zero.
 };
 
 /* ---- The solution, stage by stage ------------------------------------------------------------------------------- */
@@ -836,15 +847,18 @@ typedef struct ofc_slant_estimate {
 ofc_status ofc_slant_pentland(const ofc_image *image, const ofc_inlier_test *inliers, ofc_slant_estimate *slants);
 
 /// Lee and Rosenfeld's slants, in [0, pi), from the ratio of root mean square to mean; below 3 / (2 sqrt 2) = 1.0607 the
-/// answer is 0 with OFC_SLANT_CLAMPED_TO_ZERO.
+/// answer is 0 with OFC_REACH_BELOW_ZERO. With the mean they give the strengths of the lights, which are as wrong as the slants
+/// where these are not OFC_REACH_INSIDE.
 ///
-/// @param image    The picture.
-/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
-/// @param slants   Output: three structs, r, g, b.
-/// @return As ofc_slant_pentland().
+/// @param image      The picture.
+/// @param inliers    The pixels to use; NULL for every usable pixel of the picture.
+/// @param slants     Output: three structs, r, g, b.
+/// @param strengths  Output: three numbers, r, g, b, in pixel values; may be NULL.
+/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS; the status of an invalid argument.
 ///
 /// Reference: section 3.2, eq. 23.
-ofc_status ofc_slant_lee_rosenfeld(const ofc_image *image, const ofc_inlier_test *inliers, ofc_slant_estimate *slants);
+ofc_status ofc_slant_lee_rosenfeld(const ofc_image *image, const ofc_inlier_test *inliers, ofc_slant_estimate *slants,
+                                   double *strengths);
 
 /// Zheng and Chellappa's slants, which take shadows into account: the pixels are those of the picture's mask, black ones
 /// included.

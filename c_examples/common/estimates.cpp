@@ -19,7 +19,7 @@ Estimates estimates_of(const ofc_image &image, const ofc_inlier_test &inliers)
             to[c] = slants[c].slant_rad;
     };
     keep(ofc_slant_pentland(&image, &inliers, slants), estimates.pentland_slants);
-    keep(ofc_slant_lee_rosenfeld(&image, &inliers, slants), estimates.lee_rosenfeld_slants);
+    keep(ofc_slant_lee_rosenfeld(&image, &inliers, slants, nullptr), estimates.lee_rosenfeld_slants);
     keep(ofc_slant_zheng_chellappa(&image, slants), estimates.zheng_chellappa_slants);
     Triple maxima;
     if (ofc_channel_maxima(&image, &inliers, maxima.data()) == OFC_STATUS_OK)

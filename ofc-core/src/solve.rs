@@ -11,7 +11,7 @@ mod solution;
 
 pub use choice::{Candidate, Choice, SlantSource};
 pub use fallback::SlantFallback;
-pub use parameters::{OrientationMethod, Params, ShadowRejection};
+pub use parameters::{NormSource, OrientationMethod, Params, ShadowRejection};
 pub use solution::{Outcome, Solution};
 
 pub(crate) use color_model::SMALLEST_NOISE_MARGIN;

@@ -1,7 +1,7 @@
 //! Estimators of the direction and strength of each channel's equivalent light.
 
 use crate::image::{dimension, ofc_image, pixel_count};
-use crate::pointers::{Call, Contract, bytes, plain};
+use crate::pointers::{Call, Contract, bytes, plain, unless_null};
 use crate::status::{
     OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_TILT, OFC_STATUS_OK, OFC_STATUS_TOO_FEW_PIXELS, Refusal,
     ensure, ofc_status,
@@ -295,12 +295,14 @@ pub unsafe extern "C" fn ofc_slant_pentland(
 }
 
 /// Lee and Rosenfeld's slants, in [0, pi), from the ratio of root mean square to mean; below 3 / (2 sqrt 2) = 1.0607 the
-/// answer is 0 with OFC_SLANT_CLAMPED_TO_ZERO.
+/// answer is 0 with OFC_REACH_BELOW_ZERO. With the mean they give the strengths of the lights, which are as wrong as the slants
+/// where these are not OFC_REACH_INSIDE.
 ///
-/// @param image    The picture.
-/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
-/// @param slants   Output: three structs, r, g, b.
-/// @return As ofc_slant_pentland().
+/// @param image      The picture.
+/// @param inliers    The pixels to use; NULL for every usable pixel of the picture.
+/// @param slants     Output: three structs, r, g, b.
+/// @param strengths  Output: three numbers, r, g, b, in pixel values; may be NULL.
+/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS; the status of an invalid argument.
 ///
 /// Reference: section 3.2, eq. 23.
 #[unsafe(no_mangle)]
@@ -308,12 +310,21 @@ pub unsafe extern "C" fn ofc_slant_lee_rosenfeld(
     image: *const ofc_image,
     inliers: *const ofc_inlier_test,
     slants: *mut ofc_slant_estimate,
+    strengths: *mut f64,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
     unsafe { Contract::kept() }.call(|call| {
-        estimate_slants(call, image, inliers, slants, |image, test| {
-            slant::lee_rosenfeld::slants(image, test.selector())
-        })
+        let picture = call.image(image)?;
+        let test = call.inliers(inliers, &picture)?;
+        let slants = call.output_array::<_, 3>(slants)?;
+        let strengths = unless_null(strengths, || call.output_array::<f64, 3>(strengths))?;
+        let found = slant::lee_rosenfeld::slants(&picture, test.selector());
+        let (estimates, found_strengths) = found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
+        *slants = estimates.to_c();
+        if let Some(strengths) = strengths {
+            *strengths = found_strengths;
+        }
+        Ok(OFC_STATUS_OK)
     })
 }
 

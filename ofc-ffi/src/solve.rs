@@ -21,7 +21,8 @@ use ofc_core::light::tilt::TiltEstimator;
 use ofc_core::math::arena::Need;
 use ofc_core::orientation::joint::{Evidence, Joint};
 use ofc_core::solve::{
-    self, Candidate, Choice, OrientationMethod, Params, ShadowRejection, SlantFallback, SlantSource, Solution,
+    self, Candidate, Choice, NormSource, OrientationMethod, Params, ShadowRejection, SlantFallback,
+    SlantSource, Solution,
 };
 
 /// Where the slants come from: one of OFC_SLANTS_*.
@@ -88,6 +89,14 @@ pub const OFC_FALLBACK_LEE_ROSENFELD: i32 = 4;
 /// Take Zheng and Chellappa's.
 pub const OFC_FALLBACK_ZHENG_CHELLAPPA: i32 = 5;
 
+/// Where the lengths of the rows of F, the strengths of the channels' lights, come from: one of OFC_NORMS_*.
+pub type ofc_norm_source = i32;
+/// From C, eq. 18.
+pub const OFC_NORMS_FIT: i32 = 0;
+/// They are the largest value of each channel over the inliers, as of ofc_channel_maxima(). Slants do not change with it, the
+/// lengths of the normals do (section 4).
+pub const OFC_NORMS_CHANNEL_MAXIMA: i32 = 1;
+
 /// What ofc_solve() does. Set by ofc_solve_params_default().
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -108,8 +117,11 @@ pub struct ofc_solve_params {
     /// Whether colors that one of the lights does not reach are left out, one of OFC_SHADOW_REJECTION_*. Default
     /// OFC_SHADOW_REJECTION_AUTO.
     pub shadow_rejection: ofc_shadow_rejection,
+    /// Where the lengths of the rows of F come from, with the direct method; one of OFC_NORMS_*. Streams take OFC_NORMS_FIT
+    /// alone. Default OFC_NORMS_FIT.
+    pub norm_source: ofc_norm_source,
     /// Must be zero.
-    pub reserved: [u32; 4],
+    pub reserved: [u32; 3],
 }
 
 /// How sure the orientation of F is; all zero with the direct method. Errors of C, which turn and bend normals as well, come on
@@ -198,6 +210,7 @@ constants!(Evidence = {
     Integrability: OFC_EVIDENCE_INTEGRABILITY,
     Both: OFC_EVIDENCE_BOTH,
 });
+constants!(NormSource = { Fit: OFC_NORMS_FIT, ChannelMaxima: OFC_NORMS_CHANNEL_MAXIMA });
 constants!(SlantFallback = {
     Refuse: OFC_FALLBACK_REFUSE,
     LeastSquares: OFC_FALLBACK_LEAST_SQUARES,
@@ -218,14 +231,15 @@ impl ToC<ofc_solve_params> for Params {
             slant_fallback: self.fallback.to_c(),
             orientation_method: self.orientation_method.to_c(),
             shadow_rejection: self.shadow_rejection.to_c(),
-            reserved: [0; 4],
+            norm_source: self.norms.to_c(),
+            reserved: [0; 3],
         }
     }
 }
 
 impl FromC<ofc_solve_params> for Params {
     fn from_c(value: ofc_solve_params) -> Result<Self, Refusal> {
-        ensure(value.reserved == [0; 4], OFC_STATUS_RESERVED_NOT_ZERO)?;
+        ensure(value.reserved == [0; 3], OFC_STATUS_RESERVED_NOT_ZERO)?;
         let (lmeds, saturation) = FromC::from_c(value.lmeds)?;
         let params = Self {
             lmeds,
@@ -242,6 +256,7 @@ impl FromC<ofc_solve_params> for Params {
             },
             rank_threshold: value.rank_threshold,
             fallback: FromC::from_c(value.slant_fallback)?,
+            norms: FromC::from_c(value.norm_source)?,
         };
         ensure(params.are_valid(), OFC_STATUS_INVALID_PARAMETER)?;
         Ok(params)

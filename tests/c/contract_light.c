@@ -136,6 +136,11 @@ static ofc_status zheng_chellappa(const ofc_image *image, const ofc_inlier_test 
     return ofc_slant_zheng_chellappa(image, slants);
 }
 
+static ofc_status lee_rosenfeld(const ofc_image *image, const ofc_inlier_test *inliers, ofc_slant_estimate *slants)
+{
+    return ofc_slant_lee_rosenfeld(image, inliers, slants, NULL);
+}
+
 static slant_call slant;
 static ofc_status slant_of(const ofc_image *image)
 {
@@ -145,7 +150,7 @@ static ofc_status slant_of(const ofc_image *image)
 static void slants(void **state)
 {
     (void)state;
-    static const slant_call calls[] = {ofc_slant_pentland, ofc_slant_lee_rosenfeld, zheng_chellappa};
+    static const slant_call calls[] = {ofc_slant_pentland, lee_rosenfeld, zheng_chellappa};
     static uint8_t mask[PIXELS];
     for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
         slant = calls[i];
@@ -169,6 +174,22 @@ static void slants(void **state)
         image.mask_stride_bytes = WIDTH;
         REFUSED(OFC_STATUS_TOO_FEW_PIXELS, out, slant_of(&image));
     }
+}
+
+static void strengths(void **state)
+{
+    (void)state;
+    const ofc_image image = ball_image();
+    REFUSED(OFC_STATUS_MISALIGNED, out, ofc_slant_lee_rosenfeld(&image, NULL, out.slants, MISALIGNED(out.norms)));
+    REFUSED(OFC_STATUS_OVERLAP, out, ofc_slant_lee_rosenfeld(&image, NULL, out.slants, (double *)&out.slants[1]));
+    memset(&out, PATTERN, sizeof out);
+    assert_int_equal(ofc_slant_lee_rosenfeld(&image, NULL, out.slants, out.norms), OFC_STATUS_OK);
+    assert_true(is_untouched(&out.behind, sizeof out.behind) && is_untouched(&out.last, sizeof out.last));
+    const ofc_slant_estimate with[3] = {out.slants[0], out.slants[1], out.slants[2]};
+    for (int c = 0; c < 3; c++)
+        assert_true(out.norms[c] > 0 && out.norms[c] < 1e4);
+    assert_int_equal(lee_rosenfeld(&image, NULL, out.slants), OFC_STATUS_OK);
+    assert_memory_equal(out.slants, with, sizeof with);
 }
 
 static ofc_status maxima(const ofc_image *image)
@@ -225,7 +246,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tilts),  cmocka_unit_test(pentland_along), cmocka_unit_test(discs),
-        cmocka_unit_test(slants), cmocka_unit_test(channel_maxima), cmocka_unit_test(solve_with_any_tilts),
+        cmocka_unit_test(slants),
+        cmocka_unit_test(strengths), cmocka_unit_test(channel_maxima), cmocka_unit_test(solve_with_any_tilts),
     };
     return cmocka_run_group_tests(tests, prepare_stages, NULL);
 }

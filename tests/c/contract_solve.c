@@ -83,7 +83,7 @@ static void bad_parameters(void **state)
     struct {
         ofc_solve_params params;
         ofc_status expected;
-    } bad[34];
+    } bad[36];
     size_t n = 0;
 #define BAD(status, field, value)                                                                                      \
     (bad[n].params = stages.params, bad[n].params.field = (value), bad[n++].expected = (status))
@@ -113,9 +113,11 @@ static void bad_parameters(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, slant_fallback, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[0], 1);
-    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[3], 1);
+    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[2], 1);
     BAD(OFC_STATUS_INVALID_PARAMETER, shadow_rejection, 3);
     BAD(OFC_STATUS_INVALID_PARAMETER, shadow_rejection, -1);
+    BAD(OFC_STATUS_INVALID_PARAMETER, norm_source, 2);
+    BAD(OFC_STATUS_INVALID_PARAMETER, norm_source, -1);
     BAD(OFC_STATUS_INVALID_PARAMETER, orientation_method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, orientation_method, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[0], 1);

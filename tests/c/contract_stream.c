@@ -365,7 +365,7 @@ static void bad_streams(void **state)
     struct {
         ofc_stream_params params;
         ofc_status expected;
-    } bad[12];
+    } bad[13];
     size_t n = 0;
 #define BAD(status, field, value)                                                                                      \
     (bad[n].params = params, bad[n].params.field = (value), bad[n++].expected = (status))
@@ -375,6 +375,7 @@ static void bad_streams(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.lmeds.sample_size, 23);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.orientation_method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.shadow_rejection, 3);
+    BAD(OFC_STATUS_INVALID_PARAMETER, solve.norm_source, OFC_NORMS_CHANNEL_MAXIMA);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.tilt_estimator, OFC_TILT_CHOJNACKI);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.slant_fallback, OFC_FALLBACK_TILT_INTEGRABILITY);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.rank_threshold, 1);

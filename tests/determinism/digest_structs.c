@@ -256,6 +256,7 @@ void mix_solve_params(const ofc_solve_params *params)
     INTEGER(params->tilt_estimator);
     INTEGER(params->slant_fallback);
     INTEGER(params->orientation_method);
+    INTEGER(params->norm_source);
     INTEGERS(params->reserved);
 }
 

@@ -64,8 +64,9 @@ static void mix_slants_alone(const ofc_image *image, const ofc_inlier_test *inli
     double norms[3] = {0};
     mix_status(ofc_slant_pentland(image, inliers, slants));
     mix_slant_estimates(slants);
-    mix_status(ofc_slant_lee_rosenfeld(image, inliers, slants));
+    mix_status(ofc_slant_lee_rosenfeld(image, inliers, slants, norms));
     mix_slant_estimates(slants);
+    mix_doubles(norms, 3);
     mix_status(ofc_slant_zheng_chellappa(image, slants));
     mix_slant_estimates(slants);
     mix_status(ofc_channel_maxima(image, inliers, norms));

@@ -2,10 +2,10 @@
 
 use super::choice::Choice;
 use super::fallback;
-use super::parameters::Params;
+use super::parameters::{NormSource, Params};
 use crate::color::ellipsoid::Ellipsoid;
 use crate::color::inliers::Inliers;
-use crate::light::constrained_slant;
+use crate::light::{channel_maxima, constrained_slant};
 use crate::orientation::integrability;
 use crate::orientation::matrix::{self, Orientation};
 use crate::picture::Image;
@@ -19,8 +19,14 @@ pub(super) fn choose(
     params: &Params,
     workspace: &mut [f32],
 ) -> Option<Choice> {
-    let orient = |slants| orient(ellipsoid, slants, tilts, params);
     let selector = inliers.selector();
+    let ellipsoid = &match params.norms {
+        NormSource::Fit => *ellipsoid,
+        NormSource::ChannelMaxima => {
+            Ellipsoid { norms: channel_maxima::norms(image, selector)?, ..*ellipsoid }
+        }
+    };
+    let orient = |slants| orient(ellipsoid, slants, tilts, params);
     let mut choice = Choice::none();
     choice.set_candidates(&constrained_slant::roots(tilts, ellipsoid.cosines));
     for candidate in &mut choice.candidates {

@@ -64,7 +64,7 @@ pub(super) fn slants(
             Some((estimates.map(|estimate| estimate.slant), SlantSource::Pentland))
         }
         SlantFallback::LeeRosenfeldSlant => {
-            let estimates = lee_rosenfeld::slants(image, bits)?;
+            let (estimates, _) = lee_rosenfeld::slants(image, bits)?;
             Some((estimates.map(|estimate| estimate.slant), SlantSource::LeeRosenfeld))
         }
         SlantFallback::ZhengChellappaSlant => {

@@ -28,6 +28,17 @@ pub enum ShadowRejection {
     Off,
 }
 
+/// Where the lengths of F's rows, the strengths of the channels' lights, come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NormSource {
+    /// From C, eq. 18.
+    #[default]
+    Fit,
+    /// They are the largest value of each channel over the inliers, see [`channel_maxima`](crate::light::channel_maxima).
+    /// Slants do not change with it, the lengths of the normals do (section 4).
+    ChannelMaxima,
+}
+
 /// What to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
@@ -47,6 +58,8 @@ pub struct Params {
     pub rank_threshold: f64,
     /// Where the slants come from when eqs. 25 have no root. Default [`SlantFallback::LeastSquares`].
     pub fallback: SlantFallback,
+    /// Where the lengths of F's rows come from, with the direct method. Default [`NormSource::Fit`].
+    pub norms: NormSource,
 }
 
 impl Default for Params {
@@ -59,6 +72,7 @@ impl Default for Params {
             tilts: TiltEstimator::Pentland,
             rank_threshold: RANK_THRESHOLD,
             fallback: SlantFallback::LeastSquares,
+            norms: NormSource::Fit,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::color::lmeds::{self, MIN_PIXELS};
 use crate::light::tilt::TiltEstimator;
-use crate::solve::{self, OrientationMethod, SlantFallback};
+use crate::solve::{self, NormSource, OrientationMethod, SlantFallback};
 
 /// Whether streams do all that [`solve`](crate::solve::solve) does.
 pub const FULL: bool = cfg!(feature = "full-streams");
@@ -42,5 +42,6 @@ impl Params {
             && (FULL || self.solve.orientation_method == OrientationMethod::Direct && !self.solve.rejects_shadows())
             && matches!(self.solve.tilts, TiltEstimator::Pentland | TiltEstimator::Given(_))
             && matches!(self.solve.fallback, SlantFallback::Refuse | SlantFallback::LeastSquares)
+            && self.solve.norms == NormSource::Fit
     }
 }

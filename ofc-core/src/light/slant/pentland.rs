@@ -17,7 +17,7 @@ const PER_DIAGONAL: f64 = 1.0 / SQRT_2;
 
 /// The slants of the three channels' lights in [0, pi/2].
 ///
-/// The statistic is `(<Ix>^2 + <Iy>^2) / K^2`, the squared sine of the slant; above 1 the answer is pi/2 and
+/// Eq. 22 is `arccos (1 - statistic)^(1/2)`: the statistic, `(<Ix>^2 + <Iy>^2) / K^2`, is the squared sine of the slant. Above 1 the answer is pi/2 and
 /// [`Reach::AboveLargest`], as in Table 1. The directions are the axes and the diagonals; K^2, which the method takes to
 /// be the same along all, is the mean of their four variances.
 ///
