@@ -177,7 +177,7 @@ expect 2 "$table1" --noise -1
 # Table 2, section 5's checks and their figures, by the direct method whatever the rest of the program does.
 expect 0 "$photo" --report paper --out "$out/paper"
 for line in "direct method" "shadows kept (auto)" "Lee-Rosenfeld" "24.64     35.10     15.98" "correlation of input" "shaded depth" \
-    "coefficient" "median angular error: 6.70 degrees"; do says "$line"; done
+    "coefficient" "median angular error: 6.70 degrees" "outward normals ask for: 4.01 degrees"; do says "$line"; done
 json "$out/paper/report.json" 'r["parameters"]["orientation"] == "joint" and r["median_error_deg"] < 2.64'
 json "$out/paper/report.json" 'near(r["check"]["correlation"], [0.993, 0.997, 0.989], 0.001)'
 json "$out/paper/report.json" 'r["rank"]["colors"] == 3 and r["rank"]["normals"] == 3'
@@ -191,6 +191,8 @@ expect 0 "$photo" --orientation direct --out "$out/paper"
 says "shadows    kept (auto)"
 [ ! -e "$out/paper/channels.png" ] || fail "figures that an earlier run left"
 json "$out/paper/report.json" 'r["confidence"]["evidence"] == "tilts alone" and r["candidates"] and r["median_error_deg"] < 6.90' # 6.70
+json "$out/paper/report.json" 'near([r["check"]["turn"]["deg"]], 4.01, 0.12)'
+json "$out/scene/report.json" 'r["check"]["turn"]["deg"] < 0.01 < r["check"]["turn"]["expected_deg"]' # 0 by construction
 json "$out/scene/report.json" 'r["confidence"]["expected_error_deg"] < 0.99 and "trust" in r["confidence"]["in_words"]' # 0.96
 json "$out/scene/report.json" 'r["pixels"]["shaded"] == 32080 and r["from_behind"] == [False] * 3'
 expect 0 "$photo" --shadows keep --out "$out/keep"

@@ -40,6 +40,10 @@ void print_paper_report(const Picture &picture, const Result &direct)
     angles("Pentland's tilts on the shaded depth, minus the input's", check.depth_tilt_difference_rad);
     std::printf("median angle between the normals and those of the depth: %.2f degrees\n",
                 degrees(check.depth_angle_median_rad));
+    if (check.has_turn)
+        std::printf("turn that integrability and outward normals ask for: %.2f degrees, of %.2f expected for a right F; "
+                    "convexity %.2f\n",
+                    degrees(check.turn_rad), degrees(check.turn_expected_rad), check.convexity);
 }
 
 void write_paper_figures(const std::filesystem::path &folder, const Picture &picture, const Result &direct)

@@ -69,18 +69,23 @@ json coefficients(const ofc_color_fit &fit)
 
 json check_report(const ofc_check_result &check)
 {
-    return {{"correlation", check.correlation},
-            {"norms", {{"median", check.norm_median}, {"min", check.norm_min}, {"max", check.norm_max}}},
-            {"tilt_deg", in_degrees(check.tilts.tilt_rad)},
-            {"relit_tilt_deg", in_degrees(check.relit_tilts.tilt_rad)},
-            {"tilt_difference_deg", in_degrees(check.tilt_difference_rad)},
-            {"tilt_residual_deg", in_degrees(check.tilt_residual_rad)},
-            {"depth",
-             {{"pixels", check.depth_pixel_count},
-              {"median_angle_deg", degrees(check.depth_angle_median_rad)},
-              {"tilt_deg", in_degrees(check.depth_tilts.tilt_rad)},
-              {"tilt_difference_deg", in_degrees(check.depth_tilt_difference_rad)}}},
-            {"largest_p", check.largest_p}};
+    json report = {{"correlation", check.correlation},
+                   {"norms", {{"median", check.norm_median}, {"min", check.norm_min}, {"max", check.norm_max}}},
+                   {"tilt_deg", in_degrees(check.tilts.tilt_rad)},
+                   {"relit_tilt_deg", in_degrees(check.relit_tilts.tilt_rad)},
+                   {"tilt_difference_deg", in_degrees(check.tilt_difference_rad)},
+                   {"tilt_residual_deg", in_degrees(check.tilt_residual_rad)},
+                   {"depth",
+                    {{"pixels", check.depth_pixel_count},
+                     {"median_angle_deg", degrees(check.depth_angle_median_rad)},
+                     {"tilt_deg", in_degrees(check.depth_tilts.tilt_rad)},
+                     {"tilt_difference_deg", in_degrees(check.depth_tilt_difference_rad)}}},
+                   {"largest_p", check.largest_p}};
+    if (check.has_turn)
+        report["turn"] = {{"deg", degrees(check.turn_rad)},
+                          {"expected_deg", degrees(check.turn_expected_rad)},
+                          {"convexity", check.convexity}};
+    return report;
 }
 
 std::string text(const char *format, ...) __attribute__((format(printf, 1, 2)));
