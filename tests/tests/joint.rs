@@ -7,8 +7,8 @@ use ofc_core::orientation::joint::{self, Evidence};
 use ofc_core::picture::{Image, Order, Sample, Usable};
 use ofc_core::solve::{OrientationMethod, Outcome, Params, SlantSource, Solution, solve, workspace_len};
 use ofc_core::surface::normals::{Length, normal};
-use ofc_tests::depth_maps::{egg, sphere};
-use ofc_tests::linear::{Matrix, apply, degrees_between, dot, median, nearest_orthogonal, unit};
+use ofc_tests::depth_maps::{egg, sphere, vase};
+use ofc_tests::linear::{Matrix, apply, degrees_between, dot, median, multiply, nearest_orthogonal, unit};
 use ofc_tests::lit_reliefs::{lights, reliefs, rendered};
 use ofc_tests::photographs::{self, read_png};
 
@@ -239,4 +239,39 @@ fn the_same_whatever_the_workspace_held() {
         [0.0, f32::NAN].map(|fill| solve(&image, &params, &mut vec![fill; len]).expect("a solution").joint);
     assert!(first.is_some_and(|joint| joint.evidence != Evidence::Outward || joint.convexity > 0.0));
     assert_eq!(first, second);
+}
+
+/// The root of C is known up to a member of O(3): whichever is given, the answer and its covariance are in the frame of n.
+#[test]
+fn nothing_depends_on_the_root() {
+    let relief = vase(256, 256);
+    let (a, b) = lights(0);
+    let (pixels, _) = rendered(&relief, &a, &b, 1.0, 7);
+    let image = Image::interleaved(&pixels, 256, 256, 768, Sample::U8, Order::Rgb)
+        .and_then(|image| image.with_mask(&relief.mask, 256))
+        .expect("a picture");
+    let solution = solved(&image, &Params::default());
+    let root = solution.ellipsoid.expect("an ellipsoid").root;
+    let mut workspace = vec![0.0; joint::workspace_len(256, 256)];
+    let mut estimate = |signs: [f64; 3]| {
+        let mut root = root;
+        for (row, sign) in root.iter_mut().zip(signs) {
+            *row = row.map(|entry| sign * entry);
+        }
+        let joint = joint::estimate(&image, &solution.inliers, &root, &mut workspace).expect("an answer");
+        (multiply(joint.rows, root), joint.covariance)
+    };
+    let (g, covariance) = estimate([1.0, 1.0, 1.0]);
+    let scale = |a: &Matrix| a.as_flattened().iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
+    for signs in [[1.0, 1.0, -1.0], [-1.0, 1.0, 1.0], [-1.0, -1.0, -1.0]] {
+        let (other_g, other_covariance) = estimate(signs);
+        for i in 0..3 {
+            for j in 0..3 {
+                assert!((g[i][j] - other_g[i][j]).abs() < 1e-4 * scale(&g), "{g:?} {other_g:?}");
+                let allowed = 0.1 * (covariance[i][i] * covariance[j][j]).sqrt();
+                let off = (covariance[i][j] - other_covariance[i][j]).abs();
+                assert!(off < allowed, "{covariance:?} {other_covariance:?}");
+            }
+        }
+    }
 }

@@ -67,6 +67,7 @@ impl<'o> Estimate<'o> {
             _ => Evidence::Both,
         };
         let (rows, convexity) = outward.convex(outward.facing(best.rows));
+        let covariance = seen_in(&rows, &best.rows, &covariance);
         Joint { rows, covariance, evidence, convexity, second_best: best.second }
     }
 }
@@ -86,4 +87,22 @@ impl Scale {
         let turn = search::turn(&self.rows, rows);
         mat3::dot(turn, mat3::apply(&self.information, turn)) <= LARGEST_DISTANCE
     }
+}
+
+/// The covariance of a rotation vector in the frame of `rows`, from the one in the frame of `others`, which differ from them in
+/// signs. (A reflection turns the sense of rotation as well, which a covariance does not show.)
+fn seen_in(rows: &Mat3, others: &Mat3, covariance: &Mat3) -> Mat3 {
+    let mut signs = [1.0; 3];
+    for (sign, (row, other)) in signs.iter_mut().zip(rows.iter().zip(others)) {
+        if mat3::dot(*row, *other) < 0.0 {
+            *sign = -1.0;
+        }
+    }
+    let mut seen = *covariance;
+    for (line, a) in seen.iter_mut().zip(signs) {
+        for (entry, b) in line.iter_mut().zip(signs) {
+            *entry *= a * b;
+        }
+    }
+    seen
 }
