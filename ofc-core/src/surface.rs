@@ -1,5 +1,8 @@
-//! The surface: [`normals`] by eq. 8, the [`uncertainty`] of each, and [`depth`] by integration.
+//! The surface: [`normals`] by eq. 8, the [`uncertainty`] of each, how far its pixel departs from the matte model ([`wolff`]), and
+//! [`depth`] by integration.
 
 pub mod depth;
 pub mod normals;
+mod rows;
 pub mod uncertainty;
+pub mod wolff;

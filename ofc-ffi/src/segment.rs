@@ -3,11 +3,12 @@
 use crate::check::ofc_rank;
 use crate::image::{checked_pixel_count, dimension, ofc_image, pixel_count};
 use crate::pointers::{Contract, bytes, plain};
-use crate::status::{OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, Refusal, ensure, ofc_status};
+use crate::status::{OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, Refusal, ofc_status};
 use crate::twin::{FromC, ToC, from_c, to_c};
 use crate::types::saturation;
 use core::ffi::c_void;
-use ofc_core::color::segment::{self, MAX_REGIONS, Params, Region, patches};
+use ofc_core::color::rank::{Class, patches};
+use ofc_core::color::segment::{self, MAX_REGIONS, Params, Region};
 use ofc_core::math::arena::Need;
 use ofc_core::picture::Usable;
 
@@ -63,7 +64,30 @@ pub struct ofc_region {
     pub reserved: u32,
 }
 
-plain!(ofc_segment_params, ofc_region);
+/// What lights and surface a patch is of. Its colors say so as far as this table goes, and what they do not say is 0:
+///
+/// | colors of the patch                                    | light | surface |
+/// | three dimensions                                       | 3     | 3       |
+/// | two dimensions, filling a part of their plane          | 2     | 3       |
+/// | two dimensions, on a conic: the normals lie in a plane | 0     | 2       |
+/// | one dimension, of varying brightness                   | 1     | 0       |
+/// | one color: the normals are all the same                | 0     | 1       |
+/// | fewer than half of the pixels are usable               | 0     | 0       |
+///
+/// Cylinders and other surfaces that bend in one direction have rank 2, planes rank 1; lights in one plane or of two colors have
+/// rank 2, one light or lights of one color rank 1.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ofc_patch_class {
+    /// Rank of the light, 1 to 3; 0 where the colors do not say.
+    pub light: u8,
+    /// Rank of the surface, 1 to 3; 0 where the colors do not say.
+    pub surface: u8,
+}
+
+plain!(ofc_segment_params, ofc_region, ofc_patch_class);
+
+to_c!(Class => ofc_patch_class { light, surface });
 
 to_c!(Params => ofc_segment_params {
     tolerance, seed, min_pixels, max_regions, spacing, refits; seed_blocks: blocks, search_radius: reach
@@ -189,13 +213,16 @@ pub extern "C" fn ofc_rank_patches_count(width: i32, side: i32) -> i32 {
     across.to_c()
 }
 
-/// Classifies a picture's patches by the rank of their colors.
+/// Classifies a picture's patches by the rank of their light and the rank of their surface.
 ///
 /// @param image  The picture.
-/// @param side   Side of a patch, 3 to 64 pixels; patches at the right and lower edges may be smaller.
+/// @param side   Side of a patch, 3 to 64 pixels; patches at the right and lower edges may be smaller. The larger it is, the less
+///               a surface must bend for that to be seen.
 /// @param noise  Standard deviation of a channel in pixel values, > 0; ofc_rank has it.
-/// @param ranks  Output: ofc_rank_patches_count() a row and a column, rows without gaps: 1 to 3, or 0 where fewer than
-///               half of the pixels are usable.
+/// @param light  Rank of the light that all patches share, 1 to 3, where it is known: it fills in what a patch does not say, and a
+///               patch that says another rank keeps it. ofc_rank says 3 where its `colors` are 3, 2 where `colors` are 2 and
+///               `normals` 3, and 1 where `colors` are 1 and `normals` 0. 0 where it is not known.
+/// @param classes  Output: ofc_rank_patches_count() a row and a column, rows without gaps.
 /// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
 ///
 /// Reference: section 1.2; A. P. Petrov, L. L. Kontsevich, JOSA A 11, 1994.
@@ -204,19 +231,23 @@ pub unsafe extern "C" fn ofc_rank_patches(
     image: *const ofc_image,
     side: i32,
     noise: f64,
-    ranks: *mut u8,
+    light: i32,
+    classes: *mut ofc_patch_class,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
     unsafe { Contract::kept() }.call(|call| {
         let picture = call.image(image)?;
         let side = dimension(side);
         let [across, down] = patches::shape(picture.width(), picture.height(), side.max(patches::MIN_SIDE));
-        let ranks = call.output_slice(ranks, across * down)?;
-        let in_range = (patches::MIN_SIDE..=patches::MAX_SIDE).contains(&side);
-        ensure(in_range && noise > 0.0 && noise.is_finite(), OFC_STATUS_INVALID_PARAMETER)?;
+        let classes = call.output_slice(classes, across * down)?;
+        let light = u8::try_from(light).ok().filter(|&light| light <= 3);
+        let light = light.ok_or(OFC_STATUS_INVALID_PARAMETER)?;
         let usable = Usable::below(picture.sample().saturation());
-        let made = patches::patches(&picture, usable, side, noise, ranks);
-        made.map_err(|_| OFC_STATUS_INVALID_PARAMETER)?;
+        let found =
+            patches::patches(&picture, usable, side, noise).map_err(|_| OFC_STATUS_INVALID_PARAMETER)?;
+        for (slot, class) in classes.iter_mut().zip(found) {
+            *slot = class.under(light).to_c();
+        }
         Ok(OFC_STATUS_OK)
     })
 }

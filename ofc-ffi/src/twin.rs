@@ -31,7 +31,7 @@ macro_rules! same {
         }
     )+};
 }
-same!(u32, u64, i32, f32, f64);
+same!(u8, u32, u64, i32, f32, f64);
 
 impl<C, T: ToC<C>, const N: usize> ToC<[C; N]> for [T; N] {
     fn to_c(&self) -> [C; N] {

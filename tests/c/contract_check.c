@@ -8,7 +8,8 @@ static struct {
     ofc_region regions[OFC_MAX_REGIONS];
     int32_t count;
     uint16_t labels[PIXELS + 16];
-    uint8_t mask[PIXELS + 16], ranks[400];
+    uint8_t mask[PIXELS + 16];
+    ofc_patch_class classes[200];
 } out;
 
 static ofc_segment_params params;
@@ -158,7 +159,7 @@ static void rank(void **state)
 
 static ofc_status patches_of(const ofc_image *image)
 {
-    return ofc_rank_patches(image, 10, 0.5, out.ranks);
+    return ofc_rank_patches(image, 10, 0.5, 0, out.classes);
 }
 
 static void patches(void **state)
@@ -171,18 +172,29 @@ static void patches(void **state)
     assert_int_equal(ofc_rank_patches_count(0, 10), 0);
     assert_int_equal(ofc_rank_patches_count(WIDTH, 0), 0);
     assert_int_equal(ofc_rank_patches_count(INT32_MIN, -1), 0);
-    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rank_patches(&image, 10, 0.5, NULL));
-    REFUSED(OFC_STATUS_OVERLAP, out, ofc_rank_patches(&image, 10, 0.5, &ball[0][0][0]));
-    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, 2, 0.5, out.ranks));
-    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, 65, 0.5, out.ranks));
-    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, -10, 0.5, out.ranks));
-    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, 10, 0, out.ranks));
-    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, 10, NAN, out.ranks));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rank_patches(&image, 10, 0.5, 0, NULL));
+    REFUSED(OFC_STATUS_OVERLAP, out, ofc_rank_patches(&image, 10, 0.5, 0, (ofc_patch_class *)ball));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, 2, 0.5, 0, out.classes));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, 65, 0.5, 0, out.classes));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, -10, 0.5, 0, out.classes));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, 10, 0, 0, out.classes));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, 10, NAN, 0, out.classes));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, 10, 0.5, -1, out.classes));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rank_patches(&image, 10, 0.5, 4, out.classes));
     memset(&out, PATTERN, sizeof out);
     assert_int_equal(patches_of(&image), OFC_STATUS_OK);
-    assert_true(is_untouched(out.ranks + 72, sizeof out.ranks - 72));
-    assert_int_equal(out.ranks[0], 0);
-    assert_int_equal(out.ranks[4 * 9 + 4], 3);
+    assert_true(is_untouched(out.classes + 72, sizeof out.classes - 72 * sizeof out.classes[0]));
+    assert_true(out.classes[0].light == 0 && out.classes[0].surface == 0);
+    assert_true(out.classes[4 * 9 + 4].light == 3 && out.classes[4 * 9 + 4].surface == 3);
+    /* One color is a plane's, in whatever light: what the region says fills that in. */
+    static uint8_t flat[HEIGHT][WIDTH][3];
+    memset(flat, 90, sizeof flat);
+    ofc_image plane = image;
+    plane.pixels = flat;
+    assert_int_equal(patches_of(&plane), OFC_STATUS_OK);
+    assert_true(out.classes[4 * 9 + 4].light == 0 && out.classes[4 * 9 + 4].surface == 1);
+    assert_int_equal(ofc_rank_patches(&plane, 10, 0.5, 3, out.classes), OFC_STATUS_OK);
+    assert_true(out.classes[4 * 9 + 4].light == 3 && out.classes[4 * 9 + 4].surface == 1);
 }
 
 static ofc_status segment_of(const ofc_image *image)

@@ -123,6 +123,72 @@ static void angles_written(void **state)
         assert_true(out.angles[i] >= 0 && out.angles[i] <= 3.14159275F);
 }
 
+#define WEIGHTS(solution, index, weights, stride) ofc_normals_matte_weight(&image, solution, index, weights, stride)
+
+static ofc_status weights(const ofc_image *image)
+{
+    return ofc_normals_matte_weight(image, &solution, 1.5, out.angles, row);
+}
+
+static void matte_weights_refused(void **state)
+{
+    (void)state;
+    refuses_bad_images(weights, &out, sizeof out);
+    const ofc_image image = ball_image();
+    REFUSED(OFC_STATUS_NULL_POINTER, out, WEIGHTS(NULL, 1.5, out.angles, row));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, WEIGHTS(&solution, 1.5, NULL, row));
+    REFUSED(OFC_STATUS_MISALIGNED, out, WEIGHTS(MISALIGNED(&solution), 1.5, out.angles, row));
+    REFUSED(OFC_STATUS_MISALIGNED, out, WEIGHTS(&solution, 1.5, MISALIGNED(out.angles), row));
+    REFUSED(OFC_STATUS_MISALIGNED, out, WEIGHTS(&solution, 1.5, out.angles, row + 2));
+    REFUSED(OFC_STATUS_STRIDE_TOO_SMALL, out, WEIGHTS(&solution, 1.5, out.angles, row - 4));
+    REFUSED(OFC_STATUS_TOO_LARGE, out, WEIGHTS(&solution, 1.5, out.angles, SIZE_MAX - 3));
+    const double bad[] = {0.999, 0, -1.5, NAN, INFINITY};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        REFUSED(OFC_STATUS_INVALID_PARAMETER, out, WEIGHTS(&solution, bad[i], out.angles, row));
+    static union {
+        ofc_solution solution;
+        float weights[PIXELS];
+    } mixed;
+    mixed.solution = solution;
+    REFUSED(OFC_STATUS_OVERLAP, out, WEIGHTS(&mixed.solution, 1.5, mixed.weights, row));
+    ofc_solution wrong = solution;
+    wrong.outcome = OFC_STATUS_NO_TILT;
+    REFUSED(OFC_STATUS_NOT_SOLVED, out, WEIGHTS(&wrong, 1.5, out.angles, row));
+    wrong = solution;
+    wrong.orientation.f_inverse[4] = NAN;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, WEIGHTS(&wrong, 1.5, out.angles, row));
+}
+
+static void matte_weights_written(void **state)
+{
+    (void)state;
+    const ofc_image image = ball_image();
+    static uint8_t mask[PIXELS];
+    static float normals[PIXELS * 3];
+    assert_int_equal(ofc_inlier_test_apply(&image, &solution.inlier_test, mask, NULL), OFC_STATUS_OK);
+    assert_int_equal(ofc_normals_compute(&image, &solution, normals, 3 * row), OFC_STATUS_OK);
+    for (int n = 0; n < 2; n++) {
+        const double index = n == 0 ? 1 : 1.5;
+        memset(&out, PATTERN, sizeof out);
+        assert_int_equal(WEIGHTS(&solution, index, out.angles, PADDED * sizeof(float)), OFC_STATUS_OK);
+        for (int y = 0; y < HEIGHT; y++) {
+            for (int x = 0; x < WIDTH; x++) {
+                const double weight = (double)out.angles[y * PADDED + x];
+                const double toward = (double)normals[(y * WIDTH + x) * 3 + 2];
+                /* Fresnel's reflectances for light across and along the plane of incidence. */
+                const double inside = sqrt(1 - (1 - toward * toward) / (index * index));
+                const double across = (toward - index * inside) / (toward + index * inside);
+                const double along = (index * toward - inside) / (index * toward + inside);
+                const double upright = (index - 1) / (index + 1);
+                const double wanted = (1 - (across * across + along * along) / 2) / (1 - upright * upright);
+                assert_true(mask[y * WIDTH + x] ? toward > 0 && fabs(weight - wanted) < 1e-5 : weight == 0);
+            }
+            assert_true(is_untouched(out.angles + y * PADDED + WIDTH, 5 * sizeof(float)));
+        }
+        assert_true(is_untouched(out.angles + HEIGHT * PADDED, 8 * sizeof(float)));
+    }
+}
+
 static void covariances_written(void **state)
 {
     (void)state;
@@ -157,6 +223,8 @@ int main(void)
         cmocka_unit_test(refused),
         cmocka_unit_test(bad_solutions_refused),
         cmocka_unit_test(angles_written),
+        cmocka_unit_test(matte_weights_refused),
+        cmocka_unit_test(matte_weights_written),
         cmocka_unit_test(covariances_written),
     };
     return cmocka_run_group_tests(tests, prepare, NULL);

@@ -52,6 +52,8 @@ static void solve(const ofc_image *image, const ofc_solve_params *params)
     const ofc_status known = ofc_normals_uncertainty(image, &solution, angles, WIDTH * sizeof(float));
     mix_status(known);
     mix_floats(angles, known == OFC_STATUS_OK ? image->height * image->width : 0);
+    mix_status(ofc_normals_matte_weight(image, &solution, 1.5, angles, WIDTH * sizeof(float)));
+    mix_floats(angles, image->height * image->width);
     mix_status(ofc_check(image, &solution, NULL, workspace, workspace_bytes, &result));
     mix_check(&result);
     const ofc_depth_map surface = mix_depth(image);
@@ -113,8 +115,9 @@ void mix_segments(const ofc_image *image, const struct fitted *fitted)
     mix_rank(&rank);
     mix_status(ofc_rank_compute(image, NULL, NULL, &rank));
     mix_rank(&rank);
-    const ofc_status ranked = ofc_rank_patches(image, 8, 1.5, marks);
+    ofc_patch_class *const classes = (ofc_patch_class *)marks;
+    const ofc_status ranked = ofc_rank_patches(image, 8, 1.5, 0, classes);
     mix_status(ranked);
     const int32_t patches = ofc_rank_patches_count(image->width, 8) * ofc_rank_patches_count(image->height, 8);
-    mix_bytes(marks, ranked == OFC_STATUS_OK ? patches : 0);
+    mix_bytes(marks, ranked == OFC_STATUS_OK ? 2 * patches : 0);
 }

@@ -3,7 +3,8 @@
 use ofc_core::check::CheckError;
 use ofc_core::color::ellipsoid::NotPositiveDefinite;
 use ofc_core::color::lmeds::FitError;
-use ofc_core::color::segment::{SegmentError, patches::Refused};
+use ofc_core::color::rank::patches::Refused;
+use ofc_core::color::segment::SegmentError;
 use ofc_core::orientation::orthogonal::OrthogonalError;
 use ofc_core::picture::ImageError;
 use ofc_core::picture::flat_field::FlatFieldError;

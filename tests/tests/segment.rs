@@ -1,6 +1,7 @@
 //! Segmentation: two spheres of different material and light, noise, what cannot be segmented, bad input.
 
-use ofc_core::color::segment::patches::{self, patches};
+use ofc_core::color::rank::patches::{self, Refused, patches};
+use ofc_core::color::rank::{Class, rank};
 use ofc_core::color::segment::{Params, Regions, SegmentError, colors_len, mark, segment};
 use ofc_core::picture::{Image, Order, Sample, Usable};
 use ofc_core::solve::{self, Outcome};
@@ -46,7 +47,7 @@ fn scores(labels: &[u16], truth: &[u8], count: u8) -> Vec<(u16, f64, f64)> {
 
 #[test]
 fn two_spheres_are_two_regions() {
-    for (noise, least) in [(0.0, 0.999), (0.5, 0.98), (1.0, 0.97), (2.0, 0.9)] {
+    for (noise, least) in [(0.0, 0.999), (0.5, 0.999), (1.0, 0.996), (2.0, 0.945)] {
         for seed in 0..3 {
             let (scene, truth) = two_spheres(noise, seed);
             let (labels, regions) = run(&scene.image(), &Params { seed, ..Params::default() });
@@ -93,7 +94,7 @@ fn solve_works_on_one_label() {
         part.mask.clone_from(&mask);
         let error = median_error(&part, &solution.choice.unwrap().orientation.f_inverse);
         println!("label {label}: median error {error:.2} degrees");
-        assert!(error < 5.0);
+        assert!(error < 1.2);
     }
 }
 
@@ -111,7 +112,7 @@ fn one_brightness_step_is_enough() {
     let (labels, regions) = run(&scene.image(), &Params::default());
     let scores = scores(&labels, &truth, 2);
     println!("{} regions, {scores:.3?}", regions.len());
-    assert!(scores.iter().all(|&(_, inside, elsewhere)| inside > 0.95 && elsewhere < 0.02), "{scores:?}");
+    assert!(scores.iter().all(|&(_, inside, elsewhere)| inside > 0.99 && elsewhere < 0.01), "{scores:?}");
 }
 
 #[test]
@@ -122,32 +123,89 @@ fn the_block_of_the_original_suffices_without_noise() {
     let scores = scores(&labels, &truth, 2);
     println!("spacing 1, no refits: {} regions, {scores:.3?}", regions.len());
     // Six neighbours in f32 are known to one part in 10^7 and C through them to some percent: most of each sphere.
-    assert!(scores.iter().all(|&(_, inside, elsewhere)| inside > 0.8 && elsewhere < 0.02));
+    assert!(scores.iter().all(|&(_, inside, elsewhere)| inside > 0.88 && elsewhere < 0.01));
     assert!(regions.iter().all(|region| region.spacing == 1));
 }
 
-#[test]
-fn patches_know_planes_and_cylinders() {
-    let size = 96;
+/// The classes of a scene's patches of 16 pixels, as (light, surface), row by row.
+fn classes(scene: &Scene, noise: f64) -> Vec<(u8, u8)> {
+    let image = scene.image();
+    let found = patches(&image, Usable::below(f32::INFINITY), 16, noise).expect("parameters");
+    found.map(|Class { light, surface }| (light, surface)).collect()
+}
+
+const SIZE: usize = 96;
+
+/// A plane on the left, a cylinder in the middle and a ball on the right.
+fn three_surfaces(lights: &[Light]) -> Scene {
     let plane = |x: f64, y: f64| (x < -16.0).then_some(0.2 * x + 0.1 * y);
     let cylinder = |x: f64, _: f64| (x.abs() <= 15.0).then(|| (3600.0 - 4.0 * x * x).sqrt());
     let ball = |x: f64, y: f64| (x > 16.0).then(|| (6400.0 - (x - 32.0).powi(2) - y * y).sqrt());
-    let scene = Scene::new(size, size, &CLEAN, plane)
-        .behind(&Scene::new(size, size, &CLEAN, cylinder))
-        .behind(&Scene::new(size, size, &CLEAN, ball))
-        .with_noise(0.2, 3);
-    let usable = Usable::below(f32::INFINITY);
-    let mut ranks = vec![9; 36];
-    assert_eq!(patches::shape(size, size, 16), [6, 6]);
-    patches(&scene.image(), usable, 16, 0.2, &mut ranks).unwrap();
-    for row in ranks.chunks_exact(6) {
-        assert_eq!((row[0], row[1]), (1, 1), "{ranks:?}");
-        assert!(row[2] == 2 && row[3] == 2, "{ranks:?}");
-        assert_eq!((row[4], row[5]), (3, 3), "{ranks:?}");
+    Scene::new(SIZE, SIZE, lights, plane)
+        .behind(&Scene::new(SIZE, SIZE, lights, cylinder))
+        .behind(&Scene::new(SIZE, SIZE, lights, ball))
+}
+
+#[test]
+fn a_patch_says_the_rank_of_its_light_and_of_its_surface() {
+    assert_eq!(patches::shape(SIZE, SIZE, 16), [6, 6]);
+    // Lights, and what patches of the plane, the cylinder and the ball say.
+    for (name, lights, plane, cylinder, ball) in [
+        ("three lights", &CLEAN[..], (0, 1), (0, 2), (3, 3)),
+        ("two lights", &CLEAN[..2], (0, 1), (0, 2), (2, 3)),
+        ("one light", &CLEAN[..1], (0, 1), (1, 0), (1, 0)),
+    ] {
+        for (noise, scene) in
+            [(0.01, three_surfaces(lights)), (0.1, three_surfaces(lights).with_noise(0.1, 3))]
+        {
+            let classes = classes(&scene, noise);
+            for row in classes.chunks_exact(6) {
+                assert_eq!(
+                    row,
+                    [plane, plane, cylinder, cylinder, ball, ball],
+                    "{name}, {noise}: {classes:?}"
+                );
+            }
+        }
     }
-    for (side, noise, len) in [(2, 0.2, 36), (65, 0.2, 36), (16, 0.0, 36), (16, f64::NAN, 36), (16, 0.2, 35)]
-    {
-        assert!(patches(&scene.image(), usable, side, noise, &mut ranks[..len]).is_err());
+}
+
+#[test]
+fn a_region_says_what_its_patches_do_not() {
+    // The ball and the cylinder alone, under two lights and under three.
+    for (lights, light) in [(&CLEAN[..2], 2), (&CLEAN[..], 3)] {
+        let scene = three_surfaces(lights).with_noise(0.1, 3);
+        let image = scene.image();
+        let region = rank(&image, |window| window.masked, None).expect("pixels").class();
+        assert_eq!((region.light, region.surface), (light, 3));
+        let found = patches(&image, Usable::below(f32::INFINITY), 16, 0.1).expect("parameters");
+        for (i, class) in found.map(|class| class.under(region.light)).enumerate() {
+            let surface = [1, 1, 2, 2, 3, 3][i % 6];
+            assert_eq!((class.light, class.surface), (light, surface));
+        }
+    }
+}
+
+#[test]
+fn patches_at_the_edges_may_be_smaller_and_need_half_of_their_pixels() {
+    // 16 times 6 and 4 more; the last patches are 4 x 16, 16 x 4 and 4 x 4.
+    let (width, height) = (100, 100);
+    let scene = Scene::new(width, height, &CLEAN, |x, y| Some((8000.0 - x * x - y * y).sqrt()));
+    let usable = Usable::below(f32::INFINITY);
+    let all: Vec<Class> = patches(&scene.image(), usable, 16, 0.01).expect("parameters").collect();
+    assert_eq!(patches::shape(width, height, 16), [7, 7]);
+    assert_eq!(all, [Class { light: 3, surface: 3 }; 49]);
+    // All but just under half of each patch is masked out, or just half.
+    for (rows, class) in [(7, Class::default()), (8, Class { light: 3, surface: 3 })] {
+        let mask: Vec<u8> = (0..width * height).map(|i| u8::from(i / width % 16 < rows)).collect();
+        let image = scene.whole().with_mask(&mask, width).expect("sizes agree");
+        let found: Vec<Class> = patches(&image, usable, 16, 0.01).expect("parameters").collect();
+        assert_eq!(found[..42], [class; 42]);
+        // The rows of the last patches are all there.
+        assert_eq!(found[42..], [Class { light: 3, surface: 3 }; 7]);
+    }
+    for (side, noise) in [(2, 0.2), (65, 0.2), (16, 0.0), (16, -1.0), (16, f64::NAN), (16, f64::INFINITY)] {
+        assert!(matches!(patches(&scene.image(), usable, side, noise).map(drop), Err(Refused)));
     }
 }
 
@@ -221,15 +279,16 @@ fn bad_input_is_refused_and_nothing_written() {
     assert!(self::run(&image, &good).1.is_empty());
 }
 
+/// Shares of the object that the largest region has: 1.00, 0.975 and 0.798. The rest is shadow, or bent by near lights.
 #[test]
 fn photographs_are_mostly_one_region() {
-    for name in ["gelsight_ball_6mm", "gelsight_ball_9mm", "gelsight_ball_4mm", "cat_figurine"] {
+    for (name, least) in [("gelsight_ball_6mm", 0.99), ("gelsight_ball_9mm", 0.96), ("cat_figurine", 0.78)] {
         let Some(photo) = photographs::load(name) else { return };
         let image = photo.image();
         let (_, regions) = run(&image, &Params { tolerance: 0.2, ..Params::default() });
         let object = photo.mask.iter().filter(|&&mask| mask > 0).count();
         let shares: Vec<f64> = regions.iter().map(|region| region.pixels as f64 / object as f64).collect();
-        println!("{name}: {object} pixels, regions {shares:.2?}");
-        assert!(shares.iter().copied().fold(0.0, f64::max) > 0.3);
+        println!("{name}: {object} pixels, regions {shares:.3?}");
+        assert!(shares.iter().copied().fold(0.0, f64::max) > least, "{name}: {shares:.3?}");
     }
 }

@@ -20,16 +20,23 @@
 //! Section 2: A and B must have rank 3. \[13\]: A. P. Petrov, L. L. Kontsevich, "Properties of color images of surfaces under
 //! multiple illuminants", J. Opt. Soc. Am. A 11, 1994.
 
+mod class;
+mod colors;
+mod conic;
+pub mod patches;
+
+pub use class::Class;
+
 use super::ellipsoid::{self, Coefficients};
 use super::rounding;
-use super::second_moments::SecondMoments;
-use crate::math::mat3::{self, Mat3, SymmetricEigen};
-use crate::picture::{Pixels, Sample, Window, for_each_bit};
+use crate::picture::{Pixels, Sample, Window};
+use colors::{Colors, noise_of_residuals};
+use conic::Conic;
 use libm::sqrt;
 
 /// Deviations of the colors below this many times the noise are noise.
 const COLOR_THRESHOLD: f64 = 1.5;
-/// The same of the normals.
+/// Deviations of the normals below this many times their noise are noise.
 const NORMAL_THRESHOLD: f64 = 3.0;
 /// Residuals of a conic above this many times what noise explains mean that the colors do not lie on it.
 const CONIC_THRESHOLD: f64 = 2.0;
@@ -62,6 +69,12 @@ impl Rank {
     pub fn is_full(&self) -> bool {
         self.colors == 3 && self.normals == Some(3)
     }
+
+    /// The ranks of the light and of the surface, as far as the colors say.
+    #[must_use]
+    pub const fn class(&self) -> Class {
+        Class::of(self.colors, self.normals)
+    }
 }
 
 /// The ranks of the pixels that `inliers` gives the bits of. `fit` is the form fitted to them and the standard deviation of
@@ -80,7 +93,7 @@ pub fn rank(
     fit: Option<(Coefficients, f64)>,
 ) -> Option<Rank> {
     let colors = Colors::of(pixels, &inliers)?;
-    let color_deviations = colors.eigen.values.map(|square| sqrt(square.max(0.0)));
+    let color_deviations = colors.deviations();
     let [largest, second, third] = color_deviations;
     let floor = match pixels.sample() {
         Sample::U8 | Sample::U16 => rounding::DEVIATION,
@@ -93,10 +106,8 @@ pub fn rank(
             if noise < 0.5 * floor { floor.max(local_noise(pixels, &inliers)) } else { noise.max(floor) }
         }
     };
-    let count =
-        color_deviations.iter().filter(|&&deviation| deviation > COLOR_THRESHOLD * color_noise).count();
     let mut rank = Rank {
-        colors: (count as u32).max(1),
+        colors: dimensions(color_deviations, COLOR_THRESHOLD * color_noise),
         normals: None,
         color_deviations,
         color_noise,
@@ -107,8 +118,7 @@ pub fn rank(
         (3, Some((z, deviation))) => {
             rank.normal_deviations = colors.normals(&ellipsoid::matrix(&z));
             rank.normal_noise = 0.5 * deviation;
-            let extended = |&&deviation: &&f64| deviation > NORMAL_THRESHOLD * rank.normal_noise;
-            rank.normals = Some((rank.normal_deviations.iter().filter(extended).count() as u32).max(1));
+            rank.normals = Some(dimensions(rank.normal_deviations, NORMAL_THRESHOLD * rank.normal_noise));
         }
         (2, _) => {
             if let Some(conic) = Conic::of(pixels, &inliers, &colors) {
@@ -132,59 +142,9 @@ pub fn rank(
     Some(rank)
 }
 
-/// First and second moments of colors.
-struct Colors {
-    mean: [f64; 3],
-    moments: Mat3,
-    eigen: SymmetricEigen,
-}
-
-impl Colors {
-    #[inline(never)]
-    fn of(pixels: &impl Pixels, inliers: impl Fn(&Window) -> u64) -> Option<Self> {
-        let (mut sum, mut moments, mut count) = ([0.0; 3], SecondMoments::default(), 0_u64);
-        pixels.for_each_window(|window| {
-            let bits = inliers(window);
-            for_each_bit(bits, |i| {
-                let color = window.pixel(i).map(f64::from);
-                for (sum, value) in sum.iter_mut().zip(color) {
-                    *sum += value;
-                }
-                moments.add(color);
-            });
-            count += u64::from(bits.count_ones());
-        });
-        if count == 0 {
-            return None;
-        }
-        let moments = moments.mean(count as f64);
-        let mean = sum.map(|sum| sum / count as f64);
-        Some(Self { mean, moments, eigen: mat3::symmetric_eigen(&moments) })
-    }
-
-    /// The deviations of the normals that `c` makes of the colors.
-    fn normals(&self, c: &Mat3) -> [f64; 3] {
-        let mut root = self.eigen.vectors;
-        for (row, value) in root.iter_mut().zip(self.eigen.values) {
-            *row = mat3::scale(*row, sqrt(value.max(0.0)));
-        }
-        let form = mat3::multiply(&root, &mat3::multiply(c, &mat3::transpose(&root)));
-        mat3::symmetric_eigen(&form).values.map(|square| sqrt(square.max(0.0)))
-    }
-
-    /// The standard deviation of the colors along their longest axis.
-    fn spread(&self) -> f64 {
-        let ([axis, ..], [square, ..]) = (self.eigen.vectors, self.eigen.values);
-        let mean = mat3::dot(axis, self.mean);
-        sqrt((square - mean * mean).max(0.0))
-    }
-}
-
-/// The noise of a channel that explains residuals rho^T c rho - 1 of this deviation.
-fn noise_of_residuals(c: &Mat3, moments: &Mat3, deviation: f64) -> f64 {
-    let square = mat3::multiply(c, &mat3::multiply(moments, c));
-    let trace = square[0][0] + square[1][1] + square[2][2];
-    deviation / (2.0 * sqrt(trace)).max(f64::MIN_POSITIVE)
+/// How many deviations are above what noise makes; one at least.
+fn dimensions(deviations: [f64; 3], threshold: f64) -> u32 {
+    (deviations.iter().filter(|&&deviation| deviation > threshold).count() as u32).max(1)
 }
 
 /// The noise of a channel by second differences along rows, which a smooth surface does not show in.
@@ -192,96 +152,4 @@ fn local_noise(pixels: &impl Pixels, inliers: impl Fn(&Window) -> u64) -> f64 {
     let (sum, count) = pixels.second_differences(inliers);
     // Three channels; the weights 1, -2, 1 have the square sum 6.
     sqrt(sum / (18 * count.max(1)) as f64)
-}
-
-/// The plane of the two longest axes of colors, in units of the longest.
-struct Plane {
-    u: [f64; 3],
-    v: [f64; 3],
-}
-
-impl Plane {
-    fn of(colors: &Colors) -> Self {
-        let ([u, v, _], [largest, ..]) = (colors.eigen.vectors, colors.eigen.values);
-        let scale = 1.0 / sqrt(largest);
-        Self { u: mat3::scale(u, scale), v: mat3::scale(v, scale) }
-    }
-
-    /// What the coefficients of a conic are multiplied with at a color.
-    fn terms(&self, [r, g, b]: [f32; 3]) -> [f64; 3] {
-        let color = [f64::from(r), f64::from(g), f64::from(b)];
-        let (x, y) = (mat3::dot(self.u, color), mat3::dot(self.v, color));
-        [x * x, 2.0 * x * y, y * y]
-    }
-}
-
-/// The shortest solution of three equations that may be singular.
-#[inline(never)]
-fn solve(matrix: &Mat3, right: [f64; 3]) -> [f64; 3] {
-    let (inverse, _) = mat3::pseudo_inverse(&mat3::svd(matrix), 1e-14);
-    mat3::apply(&inverse, right)
-}
-
-/// The conic that colors in a plane lie on, as a form of rank 2 in color space.
-struct Conic {
-    c: Mat3,
-    residual_deviation: f64,
-}
-
-impl Conic {
-    /// Least squares.
-    #[inline(never)]
-    fn of(pixels: &impl Pixels, inliers: impl Fn(&Window) -> u64, colors: &Colors) -> Option<Self> {
-        let plane = Plane::of(colors);
-        let (normal, right, count) = Self::sums(pixels, &inliers, &plane);
-        let coefficients = solve(&normal, right);
-        let residuals = Self::residuals(pixels, &inliers, &plane, coefficients);
-        let (Plane { u, v }, [a, b, d]) = (plane, coefficients);
-        let mut c = [[0.0; 3]; 3];
-        for (row, (u1, v1)) in c.iter_mut().zip(u.into_iter().zip(v)) {
-            for (entry, (u2, v2)) in row.iter_mut().zip(u.into_iter().zip(v)) {
-                *entry = a * u1 * u2 + b * (u1 * v2 + v1 * u2) + d * v1 * v2;
-            }
-        }
-        let finite = c.iter().flatten().all(|entry| entry.is_finite());
-        (finite && count > 0).then(|| Self { c, residual_deviation: sqrt(residuals / count as f64) })
-    }
-
-    /// The normal equations: a window does not lie on the stack while they are solved.
-    #[inline(never)]
-    fn sums(pixels: &impl Pixels, inliers: &impl Fn(&Window) -> u64, plane: &Plane) -> (Mat3, [f64; 3], u64) {
-        let (mut normal, mut right, mut count) = ([[0.0; 3]; 3], [0.0; 3], 0_u64);
-        pixels.for_each_window(|window| {
-            let bits = inliers(window);
-            for_each_bit(bits, |i| {
-                let row = plane.terms(window.pixel(i));
-                for ((entries, right), a) in normal.iter_mut().zip(&mut right).zip(row) {
-                    *right += a;
-                    for (entry, b) in entries.iter_mut().zip(row) {
-                        *entry += a * b;
-                    }
-                }
-            });
-            count += u64::from(bits.count_ones());
-        });
-        (normal, right, count)
-    }
-
-    /// The sum of the squares of the residuals.
-    #[inline(never)]
-    fn residuals(
-        pixels: &impl Pixels,
-        inliers: &impl Fn(&Window) -> u64,
-        plane: &Plane,
-        coefficients: [f64; 3],
-    ) -> f64 {
-        let mut residuals = 0.0;
-        pixels.for_each_window(|window| {
-            for_each_bit(inliers(window), |i| {
-                let residual = mat3::dot(coefficients, plane.terms(window.pixel(i))) - 1.0;
-                residuals += residual * residual;
-            });
-        });
-        residuals
-    }
 }

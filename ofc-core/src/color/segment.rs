@@ -11,7 +11,7 @@
 //! Regions are found one after the other, and a pixel belongs to the first that takes it. Where the ellipsoids of two
 //! materials intersect, a few pixels of one are within the tolerance of the other. Materials that differ in brightness
 //! by less than half the tolerance are one. Patches of less than rank 3 (planes, cylinders, one light) have no form of
-//! their own and stay unlabelled; [`patches`] finds out where they are.
+//! their own and stay unlabelled; [`rank::patches`](super::rank::patches) finds out where they are.
 //!
 //! It runs before the regression of section 2 on pictures that hold more than one material or light environment:
 //! [`mark`] makes a mask of one label, and `Image::with_mask` points `solve` at it.
@@ -23,7 +23,6 @@
 mod field;
 mod grow;
 mod params;
-pub mod patches;
 mod seed;
 
 pub use params::{MAX_REGIONS, Params};

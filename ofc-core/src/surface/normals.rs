@@ -3,10 +3,12 @@
 //! # Reference
 //! Section 2.1, eq. 8, and section 3.4, step 7.
 
+use super::rows;
 use crate::math::mat3::{self, Mat3};
-use crate::picture::{Image, Window, for_each_bit};
-use core::fmt;
+use crate::picture::{Image, Window};
 use libm::sqrt;
+
+pub use super::rows::TooShort;
 
 /// What becomes of a normal's length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,18 +18,6 @@ pub enum Length {
     /// Set to 1.
     Unit,
 }
-
-/// The output buffer ends before the last row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TooShort;
-
-impl fmt::Display for TooShort {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("the output buffer ends before the last row")
-    }
-}
-
-impl core::error::Error for TooShort {}
 
 /// Writes the normal of every inlier and zeros everywhere else.
 ///
@@ -45,24 +35,8 @@ pub fn compute(
     normals: &mut [f32],
     row_stride: usize,
 ) -> Result<(), TooShort> {
-    let row_len = image.width() * 3;
-    let need =
-        row_stride.checked_mul(image.height() - 1).and_then(|n| n.checked_add(row_len)).ok_or(TooShort)?;
-    if row_stride < row_len || normals.len() < need {
-        return Err(TooShort);
-    }
-    image.for_each_window(|window| {
-        let start = window.y * row_stride + window.x * 3;
-        let out = normals.get_mut(start..start + window.len * 3).unwrap_or_default();
-        out.fill(0.0);
-        let (out, _) = out.as_chunks_mut::<3>();
-        for_each_bit(inliers(window), |i| {
-            if let Some(slot) = out.get_mut(i) {
-                *slot = normal(f_inverse, window.pixel(i), length).map(|component| component as f32);
-            }
-        });
-    });
-    Ok(())
+    let value = |color| normal(f_inverse, color, length).map(|component| component as f32);
+    rows::write(image, inliers, value, 0.0, normals, row_stride)
 }
 
 /// The normal of one color.

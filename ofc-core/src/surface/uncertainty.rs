@@ -24,10 +24,10 @@ mod propagate;
 pub use angle::one_sigma;
 pub use propagate::{Covariance9, of_f, of_f_inverse, of_turn};
 
+use super::rows::{self, TooShort};
 use crate::color::regression::Triangle;
 use crate::math::mat3::{self, Mat3};
-use crate::picture::{Image, Window, for_each_bit};
-use crate::surface::normals::TooShort;
+use crate::picture::{Image, Window};
 use core::f64::consts::PI;
 use libm::sqrt;
 
@@ -111,21 +111,6 @@ impl Uncertainty {
         angles: &mut [f32],
         row_stride: usize,
     ) -> Result<(), TooShort> {
-        let rows = row_stride.checked_mul(image.height() - 1);
-        let need = rows.and_then(|n| n.checked_add(image.width())).ok_or(TooShort)?;
-        if row_stride < image.width() || angles.len() < need {
-            return Err(TooShort);
-        }
-        image.for_each_window(|window| {
-            let start = window.y * row_stride + window.x;
-            let out = angles.get_mut(start..start + window.len).unwrap_or_default();
-            out.fill(PI as f32);
-            for_each_bit(inliers(window), |i| {
-                if let Some(slot) = out.get_mut(i) {
-                    *slot = self.angle(window.pixel(i)) as f32;
-                }
-            });
-        });
-        Ok(())
+        rows::write(image, inliers, |color| [self.angle(color) as f32], PI as f32, angles, row_stride)
     }
 }

@@ -1,0 +1,51 @@
+//! Numbers of every inlier, written into the caller's rows.
+
+use crate::picture::{Image, Window, for_each_bit};
+use core::fmt;
+
+/// The output buffer ends before the last row, or its rows are shorter than those of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooShort;
+
+impl fmt::Display for TooShort {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the output buffer ends before the last row")
+    }
+}
+
+impl core::error::Error for TooShort {}
+
+/// Writes the `N` numbers that `value` makes of the color of every inlier, and `nothing` everywhere else.
+///
+/// # Shape
+/// `out` is height rows of width times `N`, rows `row_stride` `f32` apart, row 0 at the top; what lies between rows is left alone.
+///
+/// # Errors
+/// [`TooShort`]; nothing is written then.
+pub(super) fn write<const N: usize>(
+    image: &Image,
+    inliers: impl Fn(&Window) -> u64,
+    value: impl Fn([f32; 3]) -> [f32; N],
+    nothing: f32,
+    out: &mut [f32],
+    row_stride: usize,
+) -> Result<(), TooShort> {
+    let row_len = image.width() * N;
+    let need =
+        row_stride.checked_mul(image.height() - 1).and_then(|n| n.checked_add(row_len)).ok_or(TooShort)?;
+    if row_stride < row_len || out.len() < need {
+        return Err(TooShort);
+    }
+    image.for_each_window(|window| {
+        let start = window.y * row_stride + window.x * N;
+        let out = out.get_mut(start..start + window.len * N).unwrap_or_default();
+        out.fill(nothing);
+        let (out, _) = out.as_chunks_mut::<N>();
+        for_each_bit(inliers(window), |i| {
+            if let Some(slot) = out.get_mut(i) {
+                *slot = value(window.pixel(i));
+            }
+        });
+    });
+    Ok(())
+}
