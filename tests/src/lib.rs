@@ -14,4 +14,5 @@ pub mod photographs;
 pub mod shaded_scenes;
 pub mod shipped;
 pub mod slant_oracle;
+pub mod solved;
 pub mod tolerances;

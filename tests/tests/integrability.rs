@@ -1,9 +1,12 @@
 //! The integral (15) against explicit loops, and on surfaces where it is zero.
 
+use ofc_core::light::tilt::TiltEstimator;
 use ofc_core::math::rng::Rng;
 use ofc_core::orientation::integrability::integral;
+use ofc_core::solve::{OrientationMethod, Params, SlantSource};
 use ofc_tests::linear::{Matrix, apply, inverse, multiply, transpose};
-use ofc_tests::linear_scenes::{Scene, paraboloid, three_lights};
+use ofc_tests::linear_scenes::{Scene, direction, paraboloid, three_lights};
+use ofc_tests::solved::solved;
 use ofc_tests::tolerances::{INTEGRABLE, REORDERED_SUM};
 
 /// The mean of `(p_y - q_x)^2` over squares of four pixels of the mask; slopes are held at n3 = 0.05 where it is smaller.
@@ -73,4 +76,36 @@ fn a_quadratic_surface_is_integrable_and_its_turned_normals_are_not() {
     // Convex and concave are the same to the integral (section 2.4).
     let inverted = multiply([[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]], truth);
     assert!(mean(inverted) < INTEGRABLE);
+}
+
+/// Section 3.4, step 8. The lights of figures 1 and 2 leave two candidates: (40, 30, 5) degrees, which are right, and (64.6, 0.9,
+/// 32.3). The integral (15) is zero for the right ones alone.
+#[test]
+fn of_two_candidates_the_more_integrable_one_is_chosen() {
+    let strong = |strength: f64, direction: [f64; 3]| direction.map(|component| component * strength);
+    let angles = [(40.0, 20.0), (30.0, -120.0), (5.0, 0.0)];
+    let [a, b, c] = angles.map(|(slant, tilt)| direction(slant, tilt));
+    let rows = [strong(120.0, a), strong(200.0, b), strong(160.0, c)];
+    let tilts = angles.map(|(_, tilt)| f64::to_radians(tilt));
+    for order in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
+        let scene = Scene::render(100, 80, order.map(|i| rows[i]), paraboloid([0.012, 0.02, 0.004], 40.0));
+        let encoded = scene.encode();
+        let params = Params {
+            orientation_method: OrientationMethod::Direct,
+            tilts: TiltEstimator::Given(order.map(|i| tilts[i])),
+            ..Params::default()
+        };
+        let solution = solved(&encoded.image(), &params);
+        let choice = solution.choice.expect("slants");
+        let degrees: Vec<[f64; 3]> =
+            choice.candidates.iter().map(|candidate| candidate.slants.map(f64::to_degrees)).collect();
+        let integrals: Vec<f64> = choice.candidates.iter().map(|candidate| candidate.integral).collect();
+        assert_eq!((choice.source, choice.candidates.len()), (SlantSource::Root, 2), "{degrees:.1?}");
+        let (right, wrong) = (choice.chosen, 1 - choice.chosen);
+        for (found, i) in degrees[right].iter().zip(order) {
+            assert!((found - angles[i].0).abs() < 0.1, "{degrees:.2?}, {integrals:?}");
+        }
+        assert!(integrals[wrong] > 1e3 * integrals[right], "{integrals:?}");
+        assert_eq!(choice.slants, choice.candidates[right].slants);
+    }
 }

@@ -11,17 +11,7 @@ use ofc_tests::depth_maps::{egg, sphere, vase};
 use ofc_tests::linear::{Matrix, apply, degrees_between, dot, median, multiply, nearest_orthogonal, unit};
 use ofc_tests::lit_reliefs::{lights, reliefs, rendered};
 use ofc_tests::photographs::{self, read_png};
-
-/// Random light triples beside Table 1's: `OFC_LIGHTS` says how many.
-fn light_triples() -> u64 {
-    std::env::var("OFC_LIGHTS").map_or(10, |text| text.parse().expect("OFC_LIGHTS is a number"))
-}
-
-fn solved(image: &Image, params: &Params) -> Solution {
-    let pixels = image.width() * image.height();
-    let mut workspace = vec![f32::NAN; workspace_len(pixels, params.lmeds.sample_size)];
-    solve(image, params, &mut workspace).expect("enough pixels")
-}
+use ofc_tests::solved::{light_triples, solved, with_truth};
 
 /// Median angle between normals and truth over the inliers, the same for the best orthogonal transformation of the same
 /// root, and whether the twin is further off.
@@ -37,21 +27,12 @@ type Pixel = ([f64; 3], [f64; 3], [f64; 3]);
 fn errors(image: &Image, solution: &Solution, truth: &[[f32; 3]]) -> Errors {
     let root = solution.ellipsoid.expect("an ellipsoid").root;
     let f_inverse = solution.choice.as_ref().expect("an answer").orientation.f_inverse;
-    let mut pixels: Vec<Pixel> = Vec::new();
-    image.for_each_window(|window| {
-        let bits = solution.inliers.bits(window);
-        for i in (0..window.len).filter(|i| bits >> i & 1 == 1) {
-            let t = truth[window.y * image.width() + window.x + i].map(f64::from);
-            if dot(t, t) > 0.0 {
-                let color = window.pixel(i);
-                pixels.push((
-                    unit(apply(root, color.map(f64::from))),
-                    normal(&f_inverse, color, Length::Unit),
-                    t,
-                ));
-            }
-        }
-    });
+    let pixels: Vec<Pixel> = with_truth(image, solution.inliers.selector(), truth)
+        .into_iter()
+        .map(|(color, t)| {
+            (unit(apply(root, color.map(f64::from))), normal(&f_inverse, color, Length::Unit), t)
+        })
+        .collect();
     let of = |normal: &dyn Fn(&Pixel) -> [f64; 3]| {
         let all: Vec<f64> = pixels.iter().map(|pixel| degrees_between(normal(pixel), pixel.2)).collect();
         median(&all)
@@ -81,7 +62,7 @@ fn rendered_scenes() {
     let (mut near, mut within_two, mut told, mut all, mut paper_near) = (0, 0, 0, 0, 0);
     let (mut convex, mut right) = (0, 0);
     for (name, is_convex, relief) in &scenes {
-        for number in 0..=light_triples() {
+        for number in 0..=light_triples(10) {
             for noise in [0.3, 1.0] {
                 let (a, b) = lights(number);
                 let (pixels, truth) = rendered(relief, &a, &b, noise, 7 + number);
@@ -122,19 +103,14 @@ fn rendered_scenes() {
         percent(told, all),
         percent(right, convex)
     );
-    assert!(percent(near, all) >= 85.0 && percent(within_two, all) >= 95.0 && percent(told, all) >= 95.0);
-    assert!(percent(right, convex) >= 95.0);
+    assert!(percent(near, all) >= 87.0 && percent(within_two, all) >= 97.0 && percent(told, all) >= 99.0);
+    assert!(percent(right, convex) >= 99.0);
     assert!(near > 3 * paper_near);
 }
 
 #[test]
 fn photographs() {
-    for (name, limit) in [
-        ("cat_figurine", 4.5),
-        ("gelsight_ball_6mm", 4.6),
-        ("gelsight_ball_9mm", 8.0),
-        ("gelsight_ball_4mm", 14.5),
-    ] {
+    for (name, limit) in [("cat_figurine", 4.4), ("gelsight_ball_6mm", 4.7), ("gelsight_ball_9mm", 7.4)] {
         let Some(photograph) = photographs::load(name) else { return };
         let mut medians = Vec::new();
         for seed in 0..5 {
@@ -201,7 +177,7 @@ fn presses_with_their_background() {
     }
     let largest = medians.iter().copied().fold(0.0, f64::max);
     println!("median of medians {:.2}, largest {largest:.2}, answered {}", median(&medians), medians.len());
-    assert!(medians.len() == 12 && median(&medians) <= 4.6 && largest <= 9.0);
+    assert!(medians.len() == 12 && median(&medians) <= 4.7 && largest <= 6.4);
 }
 
 #[test]

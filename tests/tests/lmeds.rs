@@ -257,6 +257,47 @@ fn noise_is_estimated_and_told_from_degeneracy() {
     }
 }
 
+/// The deviations of colors are the roots of the eigenvalues of their second moments, which have these three invariants.
+#[test]
+fn color_deviations_are_those_of_the_inliers() {
+    let scene = spoiled(50, 1.0, 0, 5);
+    let found = fitted(&scene, &Params { rejection: 1e9, ..seeded(5) }).expect("a fit");
+    let colors = colors(&scene);
+    let mut second = [[0.0; 3]; 3];
+    for color in &colors {
+        for (row, a) in second.iter_mut().zip(color) {
+            row.iter_mut().zip(color).for_each(|(entry, b)| *entry += a * b / colors.len() as f64);
+        }
+    }
+    let [a, b, c] = found.color_deviations.map(|deviation| deviation * deviation);
+    assert!(a >= b && b >= c);
+    let [[xx, xy, xz], [_, yy, yz], [.., zz]] = second;
+    let minors = xx * yy - xy * xy + xx * zz - xz * xz + yy * zz - yz * yz;
+    let determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    for (found, wanted) in
+        [(a + b + c, xx + yy + zz), (a * b + a * c + b * c, minors), (a * b * c, determinant)]
+    {
+        assert!((found / wanted - 1.0).abs() < 1e-9, "{found} is not {wanted}");
+    }
+}
+
+/// Colors on the ellipsoid, rounded to coarse steps: the noise of single pixels is at least that of the rounding, whatever the type
+/// of the pixels.
+#[test]
+fn rounding_is_noise() {
+    for step in [1.0, 4.0, 10.0] {
+        let mut scene = spoiled(60, 0.0, 0, 6);
+        for color in &mut scene.colors {
+            *color = color.map(|value| step * (value / step).round());
+        }
+        let found = fitted(&scene, &seeded(6)).expect("a fit");
+        let rounding = step / 12.0_f64.sqrt();
+        let (pixel, all) = (found.pixel_noise / rounding, found.noise_deviation / rounding);
+        assert!((1.0 - 1e-12..1.15).contains(&pixel), "{step}: {pixel}");
+        assert!((1.0 - 1e-12..1.15).contains(&all), "{step}: {all}");
+    }
+}
+
 #[test]
 fn student_s_distribution_by_integration() {
     for degrees in [1.0, 2.0, 3.0, 6.0, 17.0, 250.0, 5000.0] {

@@ -1,8 +1,12 @@
 //! The one-dimensional least median of squares against brute force.
 
+use ofc_core::color::inliers::Inliers;
 use ofc_core::color::location::shortest_half;
+use ofc_core::color::norms;
 use ofc_core::math::rng::Rng;
+use ofc_core::picture::Usable;
 use ofc_tests::linear::median;
+use ofc_tests::linear_scenes::Scene;
 use ofc_tests::tolerances::REORDERED_SUM;
 
 /// Midpoint and half length of every shortest half, ascending: all contiguous halves of the sorted values are tried.
@@ -52,6 +56,41 @@ fn the_shortest_half_is_found_with_the_middle_one_of_ties() {
         assert!((found.dispersion - dispersion).abs() <= REORDERED_SUM * dispersion);
     }
     assert!(ties > 500, "only {ties} cases had ties");
+}
+
+/// Section 2.2's second rejection looks at the lengths that C gives to the normals of the inliers.
+#[test]
+fn the_lengths_of_normals_are_those_of_the_form() {
+    let mut rng = Rng::new(33);
+    let form = [4e-4, 3e-4, 5e-4, 1e-4, -5e-5, 2e-5];
+    let scene = Scene::paint(70, 5, |_, _| [0; 3].map(|_| 20.0 + 30.0 * rng.unit()));
+    let mask: Vec<u8> = (0..350).map(|i| u8::from(i % 3 > 0)).collect();
+    let encoded = scene.encode();
+    let image = encoded.image().with_mask(&mask, 70).expect("sizes agree");
+    let mut lengths: Vec<f32> = scene
+        .colors
+        .iter()
+        .zip(&mask)
+        .filter(|&(_, &mask)| mask > 0)
+        .map(|(color, _)| {
+            let [r, g, b] = color.map(|value| f64::from(value as f32));
+            let [c11, c22, c33, c12, c13, c23] = form;
+            let square = r * (c11 * r + c12 * g + c13 * b)
+                + g * (c12 * r + c22 * g + c23 * b)
+                + b * (c13 * r + c23 * g + c33 * b);
+            square.sqrt() as f32
+        })
+        .collect();
+    let all = Inliers::all(Usable::below(f32::INFINITY));
+    let found = norms::location(&image, &all, &form, &mut vec![f32::NAN; 700]).expect("two pixels or more");
+    let count = lengths.len();
+    let wanted = shortest_half(&mut lengths, &mut vec![0.0; count]).expect("two values or more");
+    assert!(
+        (found.location - wanted.location).abs() < 1e-6
+            && (found.dispersion - wanted.dispersion).abs() < 1e-6
+    );
+    assert_eq!(norms::location(&image, &Inliers::none(all.usable), &form, &mut vec![0.0; 700]), None);
+    assert_eq!(norms::location(&image, &all, &form, &mut [0.0; 349]), None);
 }
 
 #[test]

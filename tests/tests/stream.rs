@@ -274,7 +274,7 @@ fn frames_too_low_for_cells_take_the_direct_method() {
 
 #[test]
 fn masked_photographs_give_the_same_bits() {
-    for name in ["cat_figurine", "gelsight_ball_4mm", "gelsight_ball_9mm"] {
+    for name in ["cat_figurine", "gelsight_ball_6mm", "gelsight_ball_9mm"] {
         let Some(photograph) = load(name) else { return };
         let image = photograph.image();
         let params = sampling((image.width() * image.height()) as u32);

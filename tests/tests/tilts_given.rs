@@ -10,6 +10,7 @@ use ofc_core::picture::{Usable, Window};
 use ofc_core::solve;
 use ofc_tests::photographs;
 use ofc_tests::shaded_scenes::{CLEAN, Matrix, PAPER, Scene, cap, dot, lopsided, median_error};
+use ofc_tests::solved::{self, solved, with_truth};
 use std::f64::consts::FRAC_PI_2;
 
 fn inliers(window: &Window) -> u64 {
@@ -90,24 +91,15 @@ fn on_photographs_the_limit_keeps_the_surface_from_flattening() {
             orientation_method: solve::OrientationMethod::Direct,
             ..solve::Params::default()
         };
-        let len = solve::workspace_len(photo.width * photo.height, params.lmeds.sample_size);
-        let mut workspace = vec![0.0; len];
-        let solution = solve::solve(&image, &params, &mut workspace).expect("a solution");
+        let solution = solved(&image, &params);
         let (Some(ellipsoid), Some(tilts)) = (solution.ellipsoid, solution.tilts) else {
             panic!("{name}: no tilts")
         };
+        let pixels = with_truth(&image, solution.inliers.selector(), &photo.normals);
+        let mut workspace = vec![0.0; workspace_len(photo.width * photo.height, 2000)];
         let error = |slants, tilts| {
             let f = Orientation::new(compose(ellipsoid.norms, slants, tilts), 1e-6);
-            let mut errors: Vec<f64> = Vec::new();
-            image.for_each_window(|window| {
-                ofc_core::picture::for_each_bit(solution.inliers.bits(window), |i| {
-                    let n = f.f_inverse.map(|row| dot(row, window.pixel(i).map(f64::from)));
-                    let truth = photo.normals[window.y * photo.width + window.x + i].map(f64::from);
-                    errors.push((dot(n, truth) / dot(n, n).sqrt()).clamp(-1.0, 1.0).acos().to_degrees());
-                });
-            });
-            errors.sort_by(f64::total_cmp);
-            errors[errors.len() / 2]
+            solved::median_error(&pixels, f.f_inverse)
         };
         for turn in [0.1, 0.2, 0.35, 0.5, 0.7] {
             for sign in [1.0, -1.0] {

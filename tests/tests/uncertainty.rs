@@ -1,7 +1,7 @@
 //! Whether errors of normals are as large as they are said to be, over rendered scenes.
 
 use ofc_core::picture::{Image, Order, Sample};
-use ofc_core::solve::{OrientationMethod, Outcome, Params, Solution, solve, workspace_len};
+use ofc_core::solve::{OrientationMethod, Outcome, Params};
 use ofc_core::surface::normals::{Length, TooShort, normal};
 use ofc_core::surface::uncertainty::{Sources, Uncertainty, of_turn};
 use ofc_tests::depth_maps::egg;
@@ -10,23 +10,13 @@ use ofc_tests::linear::{
 };
 use ofc_tests::lit_reliefs::{lights, reliefs, rendered};
 use ofc_tests::photographs;
+use ofc_tests::solved::{light_triples, solved, with_truth};
 use std::f64::consts::PI;
 
 const NO_ROTATION: Matrix = [[0.0; 3]; 3];
 
 /// What shares of errors below 1, 2 and 3 sigma should be, in percent.
 const NORMAL: [f64; 3] = [68.3, 95.4, 99.7];
-
-/// Random light triples beside Table 1's.
-fn light_triples() -> u64 {
-    std::env::var("OFC_LIGHTS").map_or(5, |text| text.parse().expect("OFC_LIGHTS is a number"))
-}
-
-fn solved(image: &Image, params: &Params) -> Solution {
-    let pixels = image.width() * image.height();
-    let mut workspace = vec![f32::NAN; workspace_len(pixels, params.lmeds.sample_size)];
-    solve(image, params, &mut workspace).expect("enough pixels")
-}
 
 /// How many errors there are, and how many are below 1, 2 and 3 sigma.
 #[derive(Clone, Copy, Default)]
@@ -60,21 +50,6 @@ impl Shares {
             assert!((share / expected - 1.0).abs() < 0.1, "{what}: {:.1?}, not {NORMAL:.1?}", self.percent());
         }
     }
-}
-
-/// Colors and true normals of the inliers.
-fn inliers(image: &Image, solution: &Solution, truth: &[[f32; 3]]) -> Vec<([f32; 3], [f64; 3])> {
-    let mut pixels = Vec::new();
-    image.for_each_window(|window| {
-        let bits = solution.inliers.bits(window);
-        for i in (0..window.len).filter(|i| bits >> i & 1 == 1) {
-            let t = truth[window.y * image.width() + window.x + i].map(f64::from);
-            if dot(t, t) > 0.0 {
-                pixels.push((window.pixel(i), t));
-            }
-        }
-    });
-    pixels
 }
 
 /// F where every light reaches, up to a factor.
@@ -133,7 +108,7 @@ fn shares_below_one_two_and_three_sigma() {
     for (name, _, relief) in &reliefs() {
         let mut scene = [Shares::default(); 3];
         let mut scene_turns = Vec::new();
-        for (number, noise) in (0..=light_triples()).flat_map(|number| [(number, 0.3), (number, 1.0)]) {
+        for (number, noise) in (0..=light_triples(5)).flat_map(|number| [(number, 0.3), (number, 1.0)]) {
             let (a, b) = lights(number);
             let (pixels, truth) = rendered(relief, &a, &b, noise, 7 + number);
             let image = Image::interleaved(&pixels, 256, 256, 768, Sample::U8, Order::Rgb)
@@ -149,7 +124,7 @@ fn shares_below_one_two_and_three_sigma() {
             let of_c = Sources { rotation: NO_ROTATION, ..sources };
             let sigmas = [Sources { c: [0.0; 21], ..of_c }, of_c, sources].map(|s| Uncertainty::new(&s));
             let mut own = [Shares::default(); 3];
-            for (color, t) in inliers(&image, &solution, &truth) {
+            for (color, t) in with_truth(&image, solution.inliers.selector(), &truth) {
                 let found = normal(&sources.f_inverse, color, Length::Unit);
                 let normals = [unit(apply(ideal, color.map(f64::from))), apply(back, found), found];
                 for ((own, sigma), n) in own.iter_mut().zip(&sigmas).zip(normals) {
@@ -192,24 +167,20 @@ fn shares_below_one_two_and_three_sigma() {
     for (shares, what) in total.iter().zip(["noise alone", "noise and C", "all"]) {
         shares.assert_calibrated(what);
     }
-    assert!((0.95..1.15).contains(&median(&noises)));
-    assert!((0.6..1.4).contains(&root_mean_square(&bends)), "{}", root_mean_square(&bends));
+    assert!((0.98..1.06).contains(&median(&noises)));
+    assert!(noises.iter().all(|noise| (0.8..1.25).contains(noise)), "{noises:.2?}");
+    assert!((1.0..1.4).contains(&root_mean_square(&bends)), "{}", root_mean_square(&bends));
+    assert!((0.85..1.1).contains(&root_mean_square(&turns)), "{}", root_mean_square(&turns));
 }
 
 fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Nobody promises for photographs what rendered scenes keep, but an error is to be on the order of what is said. The
-/// fourth is not: its normals are 12 degrees off, and integrability is sure of them.
+/// Nobody promises for photographs what rendered scenes keep, but an error is to be on the order of what is said.
 #[test]
 fn photographs() {
-    for (name, is_told) in [
-        ("cat_figurine", true),
-        ("gelsight_ball_6mm", true),
-        ("gelsight_ball_9mm", true),
-        ("gelsight_ball_4mm", false),
-    ] {
+    for name in ["cat_figurine", "gelsight_ball_6mm", "gelsight_ball_9mm"] {
         let Some(photograph) = photographs::load(name) else { return };
         let image = photograph.image();
         let solution = solved(&image, &Params::default());
@@ -217,14 +188,15 @@ fn photographs() {
         let uncertainty = Uncertainty::new(&sources);
         let mut shares = Shares::default();
         let mut sigmas = Vec::new();
-        for (color, t) in inliers(&image, &solution, &photograph.normals) {
+        for (color, t) in with_truth(&image, solution.inliers.selector(), &photograph.normals) {
             let found = normal(&sources.f_inverse, color, Length::Unit);
             let sigma = uncertainty.angle(color);
             sigmas.push(sigma.to_degrees());
             shares.add(degrees_between(found, t).to_radians(), sigma);
         }
         println!("{name:<18} median sigma {:5.2} degrees, shares {:5.1?}", median(&sigmas), shares.percent());
-        assert!(!is_told || shares.percent()[1] > 80.0);
+        let [one, two, _] = shares.percent();
+        assert!((60.0..97.0).contains(&one) && two > 98.0, "{name}: {one} {two}");
     }
 }
 

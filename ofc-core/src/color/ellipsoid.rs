@@ -116,6 +116,7 @@ pub fn decompose(z: &Coefficients) -> Result<Ellipsoid, NotPositiveDefinite> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::rng::Rng;
 
     #[test]
     fn a_known_f_comes_back_as_norms_and_cosines() {
@@ -130,8 +131,50 @@ mod tests {
         for (got, want) in ellipsoid.cosines.iter().zip([0.6, 0.0, 0.64]) {
             assert!((got - want).abs() < 1e-12);
         }
-        let again = mat3::multiply(&mat3::transpose(&ellipsoid.root), &ellipsoid.root);
-        assert!(mat3::max_abs(&mat3::multiply(&again, &ellipsoid.f_f_transposed)) < 1.0 + 1e-12);
+        let f_f_transposed = mat3::multiply(&f, &mat3::transpose(&f));
+        let root_squared = mat3::multiply(&mat3::transpose(&ellipsoid.root), &ellipsoid.root);
+        let unity = mat3::multiply(&ellipsoid.root, &ellipsoid.root_inverse());
+        for (found, wanted) in
+            [(ellipsoid.f_f_transposed, f_f_transposed), (root_squared, c), (unity, mat3::IDENTITY)]
+        {
+            for (found, wanted) in found.as_flattened().iter().zip(wanted.as_flattened()) {
+                assert!((found - wanted).abs() < 1e-12, "{found:?} {wanted:?}");
+            }
+        }
+        assert_eq!(ellipsoid.c, matrix(&[c[0][0], c[1][1], c[2][2], c[0][1], c[0][2], c[1][2]]));
+    }
+
+    #[test]
+    fn forms_are_positive_definite_where_their_eigenvalues_are() {
+        let mut rng = Rng::new(9);
+        let mut definite = 0;
+        for _ in 0..2000 {
+            let [c11, c22, c33] = [(); 3].map(|()| 1.2 * rng.unit() - 0.1);
+            let [c12, c13, c23] = [(); 3].map(|()| 1.2 * rng.unit() - 0.6);
+            let z = [c11, c22, c33, c12, c13, c23];
+            let [.., smallest] = mat3::symmetric_eigen(&matrix(&z)).values;
+            if smallest.abs() > 1e-6 {
+                assert_eq!(is_positive_definite(&z), smallest > 0.0, "{z:?}");
+                assert_eq!(decompose(&z).is_ok(), smallest > 0.0);
+                definite += u32::from(smallest > 0.0);
+            }
+        }
+        assert!((200..1800).contains(&definite), "{definite}");
+    }
+
+    #[test]
+    fn the_form_is_the_matrix_between_colors() {
+        let mut rng = Rng::new(10);
+        for _ in 0..100 {
+            let z: Coefficients = [(); 6].map(|()| 2.0 * rng.unit() - 1.0);
+            let color = [(); 3].map(|()| rng.unit() as f32);
+            let [r, g, b] = color;
+            let rho = color.map(f64::from);
+            let wanted = mat3::dot(rho, mat3::apply(&matrix(&z), rho));
+            assert!((quadratic_form(&z, r, g, b) - wanted).abs() < 1e-14);
+            let single = f64::from(single_residual(&z.map(|c| c as f32), color));
+            assert!((single - (wanted - 1.0)).abs() < 2e-6, "{single} {wanted}");
+        }
     }
 
     #[test]

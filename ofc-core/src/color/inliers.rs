@@ -240,6 +240,23 @@ mod tests {
     }
 
     #[test]
+    fn bands_hold_residuals_and_lengths_within_so_many_dispersions() {
+        let form = [4.0, 1.0, 1.0, 0.0, 0.0, 0.0];
+        // The color (x, 0, 0) has the residual 4 x^2 - 1 and the length 2 x.
+        let residual = Band::residual(form, 0.02, 2.5);
+        assert!((residual.low - 0.95).abs() < 1e-15 && (residual.high - 1.05).abs() < 1e-15);
+        let lengths = Location { location: 0.9, median_distance: 0.02, dispersion: 0.04 };
+        let norm = Band::norm(form, &lengths, 2.5);
+        let holds = |band: &Band, x: f32| band.contains([x, 0.0, 0.0]);
+        assert!(holds(&norm, 0.401) && holds(&norm, 0.499) && !holds(&norm, 0.399) && !holds(&norm, 0.501));
+        // Lengths are not negative, and an exact fit has room for rounding.
+        let wide = Band::norm(form, &Location { dispersion: 1.0, ..lengths }, 2.5);
+        assert!(wide.low == 0.0 && holds(&wide, 0.0) && holds(&wide, 1.69) && !holds(&wide, 1.71));
+        let exact = Band::residual(form, 0.0, 2.5);
+        assert!(holds(&exact, 0.5) && holds(&exact, 0.500_001) && !holds(&exact, 0.500_01));
+    }
+
+    #[test]
     fn bands_without_an_end_or_a_form() {
         let mut rng = Rng::new(7);
         for form in [[0.0; 6], [1.0, 2.0, 3.0, 0.0, -0.5, 0.5], [1e-40, 1.0, 1.0, 0.0, 0.0, 0.0]] {

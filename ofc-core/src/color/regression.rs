@@ -282,6 +282,7 @@ pub fn through(colors: &[[f64; 3]; TERMS]) -> Option<Coefficients> {
 mod tests {
     use super::*;
     use crate::color::ellipsoid::quadratic_form;
+    use crate::math::mat3;
     use crate::math::rng::Rng;
 
     const TRUTH: Coefficients = [3.0, 2.0, 5.0, -0.5, 0.25, -1.0];
@@ -322,6 +323,79 @@ mod tests {
         assert!(moments.solve().is_none());
         assert!(Moments::default().solve().is_none());
         assert!(through(&[[1.0, 1.0, 1.0]; TERMS]).is_none());
+    }
+
+    #[test]
+    fn sums_of_residuals_and_second_moments_are_those_of_the_colors() {
+        let mut rng = Rng::new(14);
+        let colors = [(); 40].map(|()| color(&mut rng).map(|c| c * (0.9 + 0.2 * rng.unit())));
+        let (mut moments, mut second) = (Moments::default(), [[0.0; 3]; 3]);
+        for color in colors {
+            moments.add(color);
+            for (row, a) in second.iter_mut().zip(color) {
+                for (entry, b) in row.iter_mut().zip(color) {
+                    *entry += a * b / 40.0;
+                }
+            }
+        }
+        let residual = |[r, g, b]: [f64; 3]| {
+            monomials([r, g, b]).iter().zip(TRUTH).map(|(m, z)| m * z).sum::<f64>() - 1.0
+        };
+        let wanted: f64 = colors.iter().map(|&color| residual(color) * residual(color)).sum();
+        assert!((moments.residual_sum(&TRUTH) / wanted - 1.0).abs() < 1e-9);
+        for (a, b) in moments.second_moments().as_flattened().iter().zip(second.as_flattened()) {
+            assert!((a - b).abs() < 1e-14);
+        }
+        // Noise d changes a residual by 2 d . C rho: the sum of its squares over the variance of d.
+        let change: f64 = colors
+            .iter()
+            .map(|&rho| {
+                let half = mat3::apply(&matrix(&TRUTH), rho);
+                4.0 * mat3::dot(half, half)
+            })
+            .sum();
+        assert!((moments.noise(&TRUTH, wanted) - sqrt(wanted / change)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn noise_in_the_colors_moves_the_fit_by_the_bias_that_is_said() {
+        let mut rng = Rng::new(15);
+        let deviation = 0.01;
+        let colors = [(); 300].map(|()| color(&mut rng));
+        let exact = {
+            let mut moments = Moments::default();
+            for color in colors {
+                moments.add(color);
+            }
+            moments
+        };
+        let fit = exact.solve().unwrap();
+        // Without a variance of the residuals, the triangle is the bias's squares and products.
+        let said = whole(&exact.error_covariance(&fit, 0.0, deviation, 1.0));
+        let mut shift = [0.0; TERMS];
+        for _ in 0..500 {
+            let normal = || (0..12).map(|_| rng.unit()).sum::<f64>() - 6.0;
+            let mut noise = std::iter::repeat_with(normal);
+            let noise = [(); 300].map(|()| [(); 3].map(|()| deviation * noise.next().unwrap()));
+            // Both signs: what is odd in the noise cancels, and the bias is even.
+            for sign in [1.0, -1.0] {
+                let mut moments = Moments::default();
+                for ([r, g, b], [x, y, z]) in colors.into_iter().zip(noise) {
+                    moments.add([r + sign * x, g + sign * y, b + sign * z]);
+                }
+                let found = moments.solve().unwrap().coefficients;
+                for ((sum, found), truth) in shift.iter_mut().zip(found).zip(TRUTH) {
+                    *sum += (found - truth) / 1000.0;
+                }
+            }
+        }
+        let largest = shift.iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+        for (i, row) in said.iter().enumerate() {
+            for (j, entry) in row.iter().enumerate() {
+                let wanted = shift[i] * shift[j];
+                assert!((entry - wanted).abs() < 0.15 * largest * largest, "{i} {j}: {entry} {wanted}");
+            }
+        }
     }
 
     #[test]

@@ -151,13 +151,20 @@ impl<'w> Cells<'w> {
 mod tests {
     use super::super::grid::SUMS;
     use super::*;
+    use crate::math::mat3;
     use crate::math::rng::Rng;
+
+    /// What is made of three independent numbers that are uniform over 0.1.
+    const MIXED: Mat3 = [[1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [-0.3, 0.4, 2.0]];
 
     /// A picture of random normals in so many cells at most.
     fn summed(width: usize, height: usize, cells: usize) -> (Grid, std::vec::Vec<f32>) {
         let mut rng = Rng::new(5);
-        let normals: std::vec::Vec<[f64; 3]> =
-            (0..width * height).map(|_| [0.3, 0.5, 2.0].map(|middle| middle + 0.1 * rng.unit())).collect();
+        let mut normal = || {
+            let [a, b, c] = mat3::apply(&MIXED, [(); 3].map(|()| 0.1 * rng.unit()));
+            [0.3 + a, 0.5 + b, 2.0 + c]
+        };
+        let normals: std::vec::Vec<[f64; 3]> = (0..width * height).map(|_| normal()).collect();
         let holes: std::vec::Vec<u64> = (0..height).map(|_| rng.next_u64() | rng.next_u64()).collect();
         let mut numbers = std::vec![f32::NAN; cells * SUMS];
         let grid = Grid::finest(width, height, numbers.len()).unwrap();
@@ -200,13 +207,16 @@ mod tests {
             assert!(width * height <= room);
             let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
             gradients.push(all.map(|(x, y)| cells.gradient(x, y, rest)[0][0]).sum::<f64>());
-            noises.push(cells.noise(&mut std::vec::Vec::from(&*rest)).unwrap()[0][0]);
+            noises.push(cells.noise(&mut std::vec::Vec::from(&*rest)).unwrap());
         }
         // Uniform over 0.1; two more pixels than parameters make one square as good as another.
         let [first, .., last] = &gradients[..] else { panic!() };
         assert!((first - last).abs() < 1e-3, "{gradients:?}");
+        let expected = mat3::multiply(&MIXED, &mat3::transpose(&MIXED));
         for noise in noises {
-            assert!((noise / (0.01 / 12.0) - 1.0).abs() < 0.1, "{noise}");
+            for (found, expected) in noise.as_flattened().iter().zip(expected.as_flattened()) {
+                assert!((found / (0.01 / 12.0) - expected).abs() < 0.15, "{noise:?}");
+            }
         }
     }
 }

@@ -70,3 +70,40 @@ pub(super) const fn flat(rows: &Mat3) -> [f64; 6] {
     let [[a, b, c], [d, e, f], _] = *rows;
     [a, b, c, d, e, f]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::mat3::{apply, dot};
+    use crate::math::rng::Rng;
+
+    #[test]
+    fn a_form_has_the_value_of_what_was_added() {
+        let mut rng = Rng::new(8);
+        let mut number = || 2.0 * rng.unit() - 1.0;
+        for _ in 0..20 {
+            let rows = [(); 3].map(|()| [(); 3].map(|()| number()));
+            let [r1, r2, _] = rows;
+            let (mut form, mut expected) = (Form::ZERO, 0.0);
+            for _ in 0..3 {
+                let (v, weight): ([f64; 6], _) = ([(); 6].map(|()| number()), number());
+                form.add_square(&v, weight);
+                let [a, b, c, d, e, f] = v;
+                let s = dot([a, b, c], r1) + dot([d, e, f], r2);
+                expected += weight * s * s;
+                let [xx, xy, xz, yy, yz, zz] = [(); 6].map(|()| number());
+                let c = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+                let (variance, weight) = ([(); 3].map(|()| number()), number());
+                form.add_noise(&c, variance, weight);
+                let [along, mixed, across] = variance;
+                let (one, other) = (apply(&c, r1), apply(&c, r2));
+                let noise = along * dot(r1, one) + 2.0 * mixed * dot(r1, other) + across * dot(r2, other);
+                expected += weight * noise;
+            }
+            let mut twice = form;
+            twice.add(&form);
+            assert!((form.at(&rows) - expected).abs() < 1e-12);
+            assert!((twice.at(&rows) - 2.0 * expected).abs() < 1e-12);
+        }
+    }
+}

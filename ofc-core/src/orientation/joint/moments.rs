@@ -113,3 +113,79 @@ impl Moments {
         Some(Plane { middle, gradient, variance: [a, b, c] })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::rng::Rng;
+
+    fn close(a: &Moments, b: &Moments) -> bool {
+        let all = |m: &Moments| {
+            let mut numbers = [0.0; NUMBERS];
+            m.store(&mut numbers);
+            numbers
+        };
+        all(a).iter().zip(all(b)).all(|(a, b)| (a - b).abs() <= 1e-5 * b.abs().max(1.0))
+    }
+
+    #[test]
+    fn sums_about_another_middle_are_those_of_the_moved_pixels() {
+        let mut rng = Rng::new(4);
+        let (mut own, mut moved) = (Moments::default(), Moments::default());
+        let (dx, dy) = (3.5, -2.25);
+        for _ in 0..30 {
+            let [x, y, a, b, c] = [(); 5].map(|()| 4.0 * rng.unit() - 2.0);
+            own.add_pixel(x, y, [a, b, c]);
+            moved.add_pixel(x + dx, y + dy, [a, b, c]);
+        }
+        let mut added = Moments::default();
+        added.add(&own, dx, dy);
+        assert!(close(&added, &moved), "{added:?} {moved:?}");
+        let mut numbers = [0.0; NUMBERS];
+        own.store(&mut numbers);
+        assert!(close(&Moments::load(&numbers), &own) && (own.count() - 30.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_plane_is_found_with_the_variance_of_its_slopes() {
+        let mut rng = Rng::new(5);
+        let (middle, along_x, along_y) = ([0.3, -0.2, 0.9], [0.05, -0.01, 0.02], [-0.03, 0.04, 0.01]);
+        let mut sums = Moments::default();
+        let places = [(); 12].map(|()| [8.0 * rng.unit() - 3.0, 6.0 * rng.unit() - 4.0]);
+        let mut mean = [0.0; 2];
+        for [x, y] in places {
+            sums.add_pixel(x, y, [0, 1, 2].map(|i: usize| middle[i] + x * along_x[i] + y * along_y[i]));
+            mean = [mean[0] + x / 12.0, mean[1] + y / 12.0];
+        }
+        let plane = sums.plane().unwrap();
+        let ([x, y], [mut xx, mut xy, mut yy]) = (mean, [0.0; 3]);
+        for [px, py] in places {
+            (xx, xy, yy) = (xx + (px - x) * (px - x), xy + (px - x) * (py - y), yy + (py - y) * (py - y));
+        }
+        for i in 0..3 {
+            assert!((plane.gradient[0][i] - along_x[i]).abs() < 1e-12);
+            assert!((plane.gradient[1][i] - along_y[i]).abs() < 1e-12);
+            let there = middle[i] + x * along_x[i] + y * along_y[i];
+            assert!((plane.middle[i] - there).abs() < 1e-12);
+        }
+        // The inverse of the scatter of the places.
+        let [a, b, c] = plane.variance;
+        assert!((a * xx + b * xy - 1.0).abs() < 1e-12 && (a * xy + b * yy).abs() < 1e-12);
+        assert!((b * xx + c * xy).abs() < 1e-12 && (b * xy + c * yy - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_line_is_no_plane() {
+        let (mut line, mut few) = (Moments::default(), Moments::default());
+        for i in 0..10 {
+            let x = f64::from(i);
+            line.add_pixel(x, 2.0 * x - 1.0, [x, 1.0, 0.0]);
+        }
+        for (x, y) in [(0.0, 0.0), (5.0, 0.0), (0.0, 5.0)] {
+            few.add_pixel(x, y, [1.0; 3]);
+        }
+        assert!(line.plane().is_none() && few.plane().is_none());
+        few.add_pixel(5.0, 5.0, [1.0; 3]);
+        assert!(few.plane().is_some());
+    }
+}

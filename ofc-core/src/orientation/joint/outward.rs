@@ -205,3 +205,65 @@ fn sum_but(parts: &[[[f64; 3]; 2]], left_out: usize) -> [[f64; 3]; 2] {
     }
     total
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::grid::{Grid, SUMS};
+    use super::*;
+    use crate::orientation::orthogonal::polish::rotation;
+
+    /// A dome of which N is the normal in another frame: n = `rows` N.
+    fn dome(rows: &Mat3) -> Outward {
+        const SIZE: usize = 64;
+        let back = mat3::transpose(rows);
+        let normal = |x: usize, y: usize| {
+            let (n1, n2) = ((x as f64 - 31.5) / 60.0, (31.5 - y as f64) / 60.0);
+            mat3::apply(&back, [n1, n2, sqrt(1.0 - n1 * n1 - n2 * n2)])
+        };
+        let mut numbers = std::vec![f32::NAN; 256 * SUMS];
+        let grid = Grid::finest(SIZE, SIZE, numbers.len()).unwrap();
+        grid.clear(&mut numbers);
+        for y in (0..SIZE).step_by(4) {
+            grid.add([0, y], SIZE, [u64::MAX; 4], |row, column| normal(column, y + row), &mut numbers);
+        }
+        let (cells, rest) = Cells::of(&grid, &mut numbers).unwrap();
+        Outward::of(&cells, rest, [31.5, -31.5]).unwrap()
+    }
+
+    #[test]
+    fn a_dome_is_cheapest_in_its_own_frame_and_its_twin_is_a_hollow() {
+        let rows = rotation([0.4, -0.3, 0.9]);
+        let outward = dome(&rows);
+        let own = outward.cost(&rows);
+        for axis in 0..3 {
+            for by in [-0.2, 0.2] {
+                let mut turn = [0.0; 3];
+                turn[axis] = by;
+                let off = outward.cost(&mat3::multiply(&rotation(turn), &rows));
+                assert!(off > own + 1.0, "{axis}: {off} {own}");
+            }
+        }
+        let [r1, r2, r3] = rows;
+        let twin = [mat3::scale(r1, -1.0), mat3::scale(r2, -1.0), r3];
+        assert_eq!(outward.facing([r1, r2, mat3::scale(r3, -1.0)]), rows);
+        for candidate in [rows, twin] {
+            let (chosen, convexity) = outward.convex(candidate);
+            assert!(chosen == rows && convexity > 0.999, "{convexity}");
+        }
+        assert!(outward.cost(&twin) > own + 1.0);
+    }
+
+    #[test]
+    fn slopes_of_a_sphere_away_from_its_middle_cost_nothing() {
+        // N = n, radius 50, at (10, -5) from the middle: n3 falls outward.
+        let (kappa, at) = (0.02, [10.0, -5.0]);
+        let [x, y] = at;
+        let along = [[kappa, 0.0, -kappa * kappa * x], [0.0, kappa, -kappa * kappa * y]];
+        let slopes = Slopes { along, variance: 1e-6 };
+        assert!(slopes.cost(&mat3::IDENTITY, at) < 1e-20);
+        // Each entry counts half of its square over the variance.
+        let off = Slopes { along: [[kappa, 3e-3, along[0][2]], along[1]], variance: 1e-6 };
+        assert!((off.cost(&mat3::IDENTITY, at) - 4.5).abs() < 1e-9);
+        assert!(slopes.cost(&mat3::IDENTITY, [-10.0, 5.0]) > 1.0);
+    }
+}

@@ -98,3 +98,67 @@ pub(super) fn derivatives(rows: &Mat3, cost: impl Fn(&Mat3) -> f64) -> ([f64; 3]
     let gradient = [p1 - m1, p2 - m2, p3 - m3].map(|difference| difference / (2.0 * STEP));
     (gradient, second.map(|row| row.map(|entry| entry / (STEP * STEP))))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn twin([r1, r2, r3]: Mat3) -> Mat3 {
+        [mat3::scale(r1, -1.0), mat3::scale(r2, -1.0), r3]
+    }
+
+    fn turned(by: [f64; 3], rows: &Mat3) -> Mat3 {
+        mat3::multiply(&rotation(by), rows)
+    }
+
+    const ROWS: Mat3 = [[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]];
+
+    #[test]
+    fn a_small_turn_is_found_to_either_twin() {
+        let by = [0.01, -0.02, 0.015];
+        for other in [turned(by, &ROWS), twin(turned(by, &ROWS))] {
+            let found = turn(&ROWS, &other);
+            for (found, wanted) in found.into_iter().zip(by) {
+                assert!((found - wanted).abs() < 1e-5, "{found:?}");
+            }
+            assert!((angle(&ROWS, &other) - 0.026_925_8).abs() < 1e-6);
+        }
+        assert!((angle(&ROWS, &turned([0.0, 2.0, 0.0], &ROWS)) - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_cost() {
+        let (slope, curvature) = ([0.3, -0.5, 0.2], [[2.0, 0.4, -0.3], [0.4, 3.0, 0.7], [-0.3, 0.7, 1.5]]);
+        let cost = |rows: &Mat3| {
+            let w = turn(&ROWS, rows);
+            mat3::dot(slope, w) + 0.5 * mat3::dot(w, mat3::apply(&curvature, w))
+        };
+        let (gradient, second) = derivatives(&ROWS, cost);
+        assert_eq!(second, hessian(&ROWS, cost));
+        for (found, wanted) in gradient.into_iter().zip(slope) {
+            assert!((found - wanted).abs() < 1e-5, "{gradient:?}");
+        }
+        for (found, wanted) in second.as_flattened().iter().zip(curvature.as_flattened()) {
+            assert!((found - wanted).abs() < 0.01, "{second:?}");
+        }
+    }
+
+    #[test]
+    fn the_least_of_several_minima_is_found_and_how_far_above_it_the_next_is() {
+        // One minimum among the starts' turns, and one a third of a turn away that is 0.25 higher.
+        let (best, next) = (turned([0.3, 0.9, -0.4], &ROWS), turned([0.0, 0.0, 2.1], &ROWS));
+        let cost = |rows: &Mat3| {
+            let near = |other: &Mat3, depth: f64| {
+                let off = angle(other, rows);
+                depth + off * off
+            };
+            near(&best, 0.0).min(near(&next, 0.25))
+        };
+        let found = minimum([&mat3::IDENTITY; 2], cost);
+        assert!(angle(&found.rows, &best) < 1e-4, "{}", angle(&found.rows, &best));
+        assert!((found.second - 0.25).abs() < 1e-4, "{}", found.second);
+        // A minimum that is alone has no second.
+        let alone = minimum([&mat3::IDENTITY; 2], |rows| angle(&best, rows));
+        assert!(alone.second > 1e300 && angle(&alone.rows, &best) < 1e-3);
+    }
+}

@@ -208,6 +208,10 @@ mod tests {
         }
         let [smallest, ..] = Windows::new(&AREA, 500_000).spreads;
         assert_eq!((smallest.columns, smallest.rows), (24, 21));
+        // Half a window apart they overlap fourfold, and each counts a quarter of what one alone does.
+        assert!((smallest.independent() - 0.125).abs() < 1e-15);
+        let apart = Spread { pitch: NonZero::new(30).unwrap(), ..smallest };
+        assert!((apart.independent() - 0.5).abs() < 1e-15);
     }
 
     #[test]

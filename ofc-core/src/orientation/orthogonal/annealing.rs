@@ -196,3 +196,51 @@ fn random_frame(rng: &mut Rng, reflected: bool) -> Mat3 {
     ]
     .map(|row| mat3::scale(row, sign))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_rotations_and_reflections_in_all_directions() {
+        let mut rng = Rng::new(12);
+        let (mut mean, mut squares) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+        for i in 0..4000 {
+            let reflected = i % 2 == 1;
+            let rows = random_frame(&mut rng, reflected);
+            let product = mat3::multiply(&rows, &mat3::transpose(&rows));
+            for (a, b) in product.as_flattened().iter().zip(mat3::IDENTITY.as_flattened()) {
+                assert!((a - b).abs() < 1e-12);
+            }
+            let [r1, r2, r3] = rows;
+            let determinant = mat3::dot(mat3::cross(r1, r2), r3);
+            assert!((determinant - if reflected { -1.0 } else { 1.0 }).abs() < 1e-12);
+            let entries = mean.as_flattened_mut().iter_mut().zip(squares.as_flattened_mut());
+            for ((mean, square), entry) in entries.zip(rows.as_flattened()) {
+                *mean += entry / 4000.0;
+                *square += entry * entry / 4000.0;
+            }
+        }
+        // Every entry has mean 0 and variance 1/3; 4000 draws know these to 0.009 and 0.005.
+        assert!(mean.as_flattened().iter().all(|mean| mean.abs() < 0.04), "{mean:?}");
+        assert!(
+            squares.as_flattened().iter().all(|square| (square - 1.0 / 3.0).abs() < 0.025),
+            "{squares:?}"
+        );
+    }
+
+    #[test]
+    fn turns_are_as_long_as_they_may_be_and_in_all_directions() {
+        let mut rng = Rng::new(13);
+        let (mut longest, mut mean) = (0.0_f64, [0.0; 3]);
+        for _ in 0..4000 {
+            let turn = random_turn(&mut rng, 0.4);
+            longest = longest.max(sqrt(mat3::dot(turn, turn)));
+            for (mean, entry) in mean.iter_mut().zip(turn) {
+                *mean += entry / 4000.0;
+            }
+        }
+        assert!((0.399..0.4).contains(&longest), "{longest}");
+        assert!(mean.iter().all(|mean| mean.abs() < 0.01), "{mean:?}");
+    }
+}

@@ -174,3 +174,28 @@ fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
     let length = sqrt(mat3::dot(v, v));
     (length > 0.0 && length.is_finite()).then(|| mat3::scale(v, 1.0 / length))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::rng::Rng;
+
+    #[test]
+    fn no_angle_is_better_than_the_best() {
+        let mut rng = Rng::new(2);
+        for _ in 0..50 {
+            let mut sums = Angle::default();
+            let terms = [(); 5].map(|()| [2.0 * rng.unit() - 1.0, 3.0 * rng.unit() - 1.0]);
+            for [x, y] in terms {
+                sums.add(x, y);
+            }
+            let at = |angle: f64| {
+                let (s, c) = sincos(angle);
+                terms.iter().map(|[x, y]| (x * c + y * s) * (x * c + y * s)).sum::<f64>()
+            };
+            let (angle, least) = sums.minimum();
+            assert!((at(angle) - least).abs() < 1e-12, "{least}");
+            assert!((0..400).all(|i| at(f64::from(i) * 0.01) >= least - 1e-12));
+        }
+    }
+}

@@ -93,3 +93,69 @@ impl<'w> Sample<'w> {
         sum / self.cells.len() as f64
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::rng::Rng;
+    use crate::orientation::orthogonal::polish::rotation;
+    use crate::picture::{Order, Sample as Format};
+
+    /// The quotient rule on the mean and the differences of a cell: `(p_y - q_x)^2` for p = -n1 / n3, q = -n2 / n3.
+    fn curl(n: [f64; 3], n_x: [f64; 3], n_y: [f64; 3]) -> f64 {
+        let slope_y = -(n_y[0] * n[2] - n[0] * n_y[2]) / (n[2] * n[2]);
+        let slope_x = -(n_x[1] * n[2] - n[1] * n_x[2]) / (n[2] * n[2]);
+        (slope_y - slope_x) * (slope_y - slope_x)
+    }
+
+    #[test]
+    fn the_integral_of_a_sample_is_that_of_the_quotient_rule() {
+        let mut rng = Rng::new(3);
+        let (width, height) = (70, 9);
+        let colors: std::vec::Vec<f32> =
+            (0..width * height * 3).map(|i| [0.1, 0.2, 0.9][i % 3] + 0.1 * rng.unit() as f32).collect();
+        let bytes: std::vec::Vec<u8> = colors.iter().flat_map(|value| value.to_ne_bytes()).collect();
+        let image = Image::interleaved(&bytes, width, height, width * 12, Format::F32, Order::Rgb).unwrap();
+        let all = |window: &Window| window.masked;
+        for (turn, sign) in [([0.1, -0.2, 0.4], 1.0), ([0.2, 0.1, -2.0], -1.0)] {
+            let [r1, r2, r3] = rotation(turn);
+            let rows = [r1, mat3::scale(r2, sign), r3];
+            let mut workspace = std::vec![0.0; 1000 * CELL];
+            let sample = Sample::gather(&image, all, &mat3::IDENTITY, 1000, &mut workspace).unwrap();
+            let (mut sum, mut cells) = (0.0, 0);
+            for_each_cell(&image, all, &rows, |n, n_x, n_y| {
+                sum += curl(n, n_x, n_y);
+                cells += 1;
+            });
+            assert_eq!((sample.cells.len(), cells), (69 * 8, 69 * 8));
+            let (found, wanted) = (sample.integral(&rows), sum / f64::from(cells));
+            assert!((found / wanted - 1.0).abs() < 1e-5, "{found} {wanted}");
+            // Evenly spaced ones, as many as asked for.
+            let few = Sample::gather(&image, all, &mat3::IDENTITY, 100, &mut workspace).unwrap();
+            assert_eq!(few.cells.len(), 100);
+            assert!((few.integral(&rows) / wanted - 1.0).abs() < 0.5);
+        }
+        assert!(Sample::gather(&image, |_| 0, &mat3::IDENTITY, 100, &mut [0.0; 90]).is_none());
+    }
+
+    #[test]
+    fn differences_are_to_the_right_and_upward() {
+        // Red grows to the right by 2, green downward by 3.
+        let bytes: std::vec::Vec<u8> =
+            (0..12).flat_map(|i| [10 + 2 * (i % 4), 20 + 3 * (i / 4), 7]).collect();
+        let image = Image::interleaved(&bytes, 4, 3, 12, Format::U8, Order::Rgb).unwrap();
+        let mut cells = 0;
+        for_each_cell(
+            &image,
+            |window| window.masked,
+            &mat3::IDENTITY,
+            |v, v_x, v_y| {
+                let (x, y) = (f64::from(cells % 3), f64::from(cells / 3));
+                assert_eq!(v, [11.0 + 2.0 * x, 21.5 + 3.0 * y, 7.0]);
+                assert_eq!((v_x, v_y), ([2.0, 0.0, 0.0], [0.0, -3.0, 0.0]));
+                cells += 1;
+            },
+        );
+        assert_eq!(cells, 6);
+    }
+}

@@ -172,6 +172,30 @@ mod tests {
     }
 
     #[test]
+    fn forms_are_the_covariance_of_the_turned_normal() {
+        let mut turn = [[0.0; 9]; 9];
+        for (i, row) in turn.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                *entry = 0.1 * (i + j) as f64 + 0.01 * (i * j) as f64;
+            }
+        }
+        let n = [0.3, -0.5, 0.8];
+        let [x, y, z] = n;
+        let monomials = [x * x, y * y, z * z, x * y, x * z, y * z];
+        let places = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+        for (form, (i, j)) in forms(&turn).iter().zip(places) {
+            let found: f64 = form.iter().zip(monomials).map(|(entry, term)| entry * term).sum();
+            let mut wanted = 0.0;
+            for a in 0..3 {
+                for b in 0..3 {
+                    wanted += n[a] * n[b] * turn[3 * i + a][3 * j + b];
+                }
+            }
+            assert!((found - wanted).abs() < 1e-14, "{i} {j}");
+        }
+    }
+
+    #[test]
     fn f_and_its_inverse_err_together() {
         // A rotation about z alone by 1e-5: F^-1 becomes T F^-1.
         let rotation = [[0.0; 3], [0.0; 3], [0.0, 0.0, 1e-10]];
