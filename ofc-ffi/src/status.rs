@@ -229,4 +229,5 @@ constants!(Outcome = {
     NotPositiveDefinite: OFC_STATUS_NOT_POSITIVE_DEFINITE,
     NoTilt: OFC_STATUS_NO_TILT,
     NoConsistentSlants: OFC_STATUS_NO_CONSISTENT_SLANTS,
+    Unfinished: OFC_STATUS_NOT_SOLVED,
 });

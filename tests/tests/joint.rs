@@ -8,7 +8,7 @@ use ofc_core::picture::{Image, Order, Sample, Usable};
 use ofc_core::solve::{OrientationMethod, Outcome, Params, SlantSource, Solution, solve, workspace_len};
 use ofc_core::surface::normals::{Length, normal};
 use ofc_tests::depth_maps::{egg, sphere, vase};
-use ofc_tests::linear::{Matrix, apply, degrees_between, dot, median, multiply, nearest_orthogonal, unit};
+use ofc_tests::linear::{Matrix, apply, degrees_between, median, multiply, nearest_orthogonal, unit};
 use ofc_tests::lit_reliefs::{lights, reliefs, rendered};
 use ofc_tests::photographs::{self, read_png};
 use ofc_tests::solved::{light_triples, solved, with_truth};

@@ -1,5 +1,6 @@
 //! The slants that the tilts allow, and the choice among them.
 
+use super::outcome::Outcome;
 use crate::light::constrained_slant::{Candidates, MAX_CANDIDATES, SlantRoot};
 use crate::orientation::matrix::Orientation;
 use core::f64::consts::FRAC_PI_2;
@@ -60,6 +61,11 @@ impl Choice {
     #[must_use]
     pub fn lights_from_behind(&self) -> [bool; 3] {
         self.slants.map(|slant| slant > FRAC_PI_2)
+    }
+
+    /// Whether this F solves the picture.
+    pub(crate) const fn outcome(&self) -> Outcome {
+        if self.orientation.rank == 3 { Outcome::Solved } else { Outcome::RankDeficient }
     }
 
     /// No choice yet.

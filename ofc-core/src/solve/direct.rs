@@ -1,4 +1,4 @@
-//! F from tilts: the candidate slants, and the choice among them (section 3.4, steps 4-8).
+//! F from tilts: the slants that agree with them, and the choice among these (section 3.4, steps 4 to 8).
 
 use super::choice::Choice;
 use super::fallback;
@@ -10,11 +10,12 @@ use crate::orientation::integrability;
 use crate::orientation::matrix::{self, Orientation};
 use crate::picture::Image;
 
-/// The candidate slants for these tilts, and the one whose normals are most integrable (section 3.4, steps 4-8).
+/// The candidate slants for these tilts, and F of the one whose normals are most integrable; `None` where no slants agree with
+/// the tilts and the fallback has none.
 pub(super) fn choose(
     image: &Image,
-    inliers: &Inliers,
     ellipsoid: &Ellipsoid,
+    inliers: &Inliers,
     tilts: [f64; 3],
     params: &Params,
     workspace: &mut [f32],
@@ -28,10 +29,13 @@ pub(super) fn choose(
     };
     let orient = |slants| orient(ellipsoid, slants, tilts, params);
     let mut choice = Choice::none();
+    // Step 4: all solutions of eqs. 25.
     choice.set_candidates(&constrained_slant::roots(tilts, ellipsoid.cosines));
     for candidate in &mut choice.candidates {
+        // Steps 5 and 6: F and its inverse.
         let orientation = orient(candidate.slants);
         if orientation.rank == 3 {
+            // Step 7: the normals, and the integral (15) over them.
             #[expect(
                 clippy::needless_borrows_for_generic_args,
                 reason = "so that one instance serves tilts_given too"
@@ -40,6 +44,7 @@ pub(super) fn choose(
             candidate.integral = integral.map_or(f64::INFINITY, |integral| integral.mean);
         }
     }
+    // Step 8: the smallest integral; without a solution section 3.3's other ways to slants.
     if let Some((chosen, slants)) = choice.most_integrable() {
         (choice.chosen, choice.slants) = (chosen, slants);
     } else {

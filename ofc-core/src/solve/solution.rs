@@ -1,32 +1,19 @@
 //! What the pipeline found, and how far it came.
 
 use super::choice::Choice;
-use super::joint::oriented;
-use super::parameters::Params;
+use super::color_model::{self, NoModel};
+use super::oriented::{NoOrientation, Oriented};
+use super::outcome::Outcome;
 use crate::color::ellipsoid::Ellipsoid;
-use crate::color::inliers::Inliers;
-use crate::color::lmeds::Fit;
+use crate::color::inliers::{Band, Inliers};
+use crate::color::lmeds::{Fit, FitError, Method};
 use crate::color::location::Location;
+use crate::color::norms;
 use crate::color::rank::Rank;
 use crate::light::tilt::Tilts;
 use crate::orientation::joint::Joint;
-use crate::picture::{PixelCounts, Usable};
+use crate::picture::{PixelCounts, Pixels, Usable};
 use crate::surface::uncertainty::Sources;
-
-/// How far the pipeline came.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// To F.
-    Solved,
-    /// The colors, or the normals, span less than three dimensions: C is not determined.
-    RankDeficient,
-    /// The colors do not lie on an ellipsoid: C is not positive definite.
-    NotPositiveDefinite,
-    /// A channel's mean gradient over the inliers is zero, or there are no neighbouring inliers: no tilts.
-    NoTilt,
-    /// No slants agree with the tilts and the angles between the rows of F, and there was to be no fallback.
-    NoConsistentSlants,
-}
 
 /// What the pipeline found. What comes after the stage that `outcome` names is `None`.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,21 +59,10 @@ impl Solution {
         })
     }
 
-    /// As [`Self::unsolved`], in place.
-    pub(crate) fn restart(&mut self, pixel_counts: PixelCounts) {
-        self.outcome = Outcome::RankDeficient;
-        self.pixel_counts = pixel_counts;
-        self.color_deviations = [0.0; 3];
-        self.inliers = Inliers::none(Usable::below(self.inliers.usable.saturation));
-        self.inlier_count = 0;
-        (self.rank, self.fit, self.norm_location) = (None, None, None);
-        (self.ellipsoid, self.tilts, self.joint, self.choice) = (None, None, None, None);
-    }
-
-    /// What is known before the fit.
-    pub(crate) fn unsolved(pixel_counts: PixelCounts, usable: Usable) -> Self {
+    /// What is known before the regression.
+    pub(crate) const fn new(pixel_counts: PixelCounts, usable: Usable) -> Self {
         Self {
-            outcome: Outcome::RankDeficient,
+            outcome: Outcome::Unfinished,
             pixel_counts,
             color_deviations: [0.0; 3],
             rank: None,
@@ -101,22 +77,96 @@ impl Solution {
         }
     }
 
-    /// Ends with this transformation, if there is one; whether there is.
-    pub(crate) fn orient(&mut self, joint: Option<Joint>, params: &Params) -> bool {
-        self.joint = joint;
-        let (Some(joint), Some(ellipsoid)) = (joint, &self.ellipsoid) else { return false };
-        let (tilts, choice) = oriented(&joint.rows, &ellipsoid.root_inverse(), params.rank_threshold);
-        (self.tilts, self.choice) = (Some(tilts), Some(choice));
-        self.conclude();
-        true
+    /// Becomes [`Self::new`] of these pixels, in its place.
+    pub(crate) fn restart(&mut self, pixel_counts: PixelCounts) {
+        self.outcome = Outcome::Unfinished;
+        self.pixel_counts = pixel_counts;
+        self.color_deviations = [0.0; 3];
+        self.inliers = Inliers::none(Usable::below(self.inliers.usable.saturation));
+        self.inlier_count = 0;
+        (self.rank, self.fit, self.norm_location) = (None, None, None);
+        (self.ellipsoid, self.tilts, self.joint, self.choice) = (None, None, None, None);
+    }
+
+    /// Takes the regression over, whose fit is in its place if there is one.
+    ///
+    /// # Errors
+    /// [`FitError`] but [`FitError::RankDeficient`], which leaves a solution without a fit.
+    pub(crate) fn take_regression(
+        &mut self,
+        pixels: &impl Pixels,
+        regression: Result<(), FitError>,
+        method: Method,
+    ) -> Result<(), FitError> {
+        let usable = self.inliers.usable;
+        let mut inliers = Inliers::all(usable);
+        match (regression, &self.fit) {
+            (Ok(()), Some(fit)) => {
+                self.color_deviations = fit.color_deviations;
+                inliers.residual = fit.band;
+                (self.inliers, self.inlier_count) = (inliers, fit.inliers);
+            }
+            (Err(FitError::RankDeficient { color_deviations }), _) => {
+                (self.fit, self.color_deviations) = (None, color_deviations);
+            }
+            (Err(error), _) => return Err(error),
+            (Ok(()), None) => {}
+        }
+        self.rank = color_model::ranks(pixels, self.fit.as_ref(), &inliers, method);
+        Ok(())
+    }
+
+    /// The model of the colors, which also takes its place here.
+    ///
+    /// # Errors
+    /// [`NoModel`]. Where the normals alone span less than three dimensions the ellipsoid is in its place all the same.
+    pub(crate) fn model(&mut self, method: Method) -> Result<Ellipsoid, NoModel> {
+        let ellipsoid = color_model::ellipsoid(self.fit.as_ref(), self.rank, method)?;
+        self.ellipsoid = Some(ellipsoid);
+        if self.rank.is_some_and(|rank| !rank.is_full()) {
+            Err(NoModel::RankDeficient)
+        } else {
+            Ok(ellipsoid)
+        }
+    }
+
+    /// Ends without a model.
+    pub(crate) fn end_without_model(&mut self, reason: NoModel) {
+        self.outcome = match reason {
+            NoModel::RankDeficient => Outcome::RankDeficient,
+            NoModel::NotPositiveDefinite => Outcome::NotPositiveDefinite,
+        };
+    }
+
+    /// The second rejection: leaves out inliers whose normals are too long or too short.
+    ///
+    /// # Scratch
+    /// Two `f32` a pixel.
+    pub(crate) fn reject_lengths(&mut self, pixels: &impl Pixels, rejection: f64, workspace: &mut [f32]) {
+        let Some(fit) = &self.fit else { return };
+        self.norm_location = norms::location(pixels, &self.inliers, &fit.z(), workspace);
+        if let Some(lengths) = &self.norm_location {
+            self.inliers.norm = Band::norm(fit.z(), lengths, rejection);
+            self.inlier_count = self.inliers.count(pixels);
+        }
     }
 
     /// Ends with the choice of slants that is in its place.
     pub(crate) fn conclude(&mut self) {
-        self.outcome = match &self.choice {
-            None => Outcome::NoConsistentSlants,
-            Some(choice) if choice.orientation.rank < 3 => Outcome::RankDeficient,
-            Some(_) => Outcome::Solved,
-        };
+        self.outcome = self.choice.as_ref().map_or(Outcome::NoConsistentSlants, Choice::outcome);
+    }
+
+    /// Ends with F, or without one.
+    pub(crate) fn take_orientation(&mut self, orientation: Result<Oriented, NoOrientation>) {
+        match orientation {
+            Ok(Oriented { tilts, choice, joint }) => {
+                self.outcome = choice.outcome();
+                (self.tilts, self.choice, self.joint) = (Some(tilts), Some(choice), joint);
+            }
+            Err(NoOrientation::NoTilt) => self.outcome = Outcome::NoTilt,
+            Err(NoOrientation::NoConsistentSlants { tilts }) => {
+                (self.tilts, self.outcome) = (Some(tilts), Outcome::NoConsistentSlants);
+            }
+        }
     }
 }

@@ -60,9 +60,9 @@ impl State {
         self.drift = None;
         let found = self.search(memory);
         let fit = self.fit(found, memory);
-        self.model(fit, memory).map_err(StreamError::Fit)?;
+        let has_model = self.model(fit, memory).map_err(StreamError::Fit)?;
         let next = if FULL && self.params.solve.is_joint() { Pass::Outward } else { Pass::Tilts };
-        self.go_on(self.solution.outcome == Outcome::NoTilt, next);
+        self.go_on(has_model, next);
         Ok(())
     }
 
@@ -80,15 +80,30 @@ impl State {
         problem.evaluate::<FULL>(scaled, workspace, &mut self.solution.fit)
     }
 
-    /// What follows from the fit.
+    /// What follows from the fit; whether there is a model of the colors.
     #[inline(never)]
-    fn model(&mut self, fit: Result<(), FitError>, memory: &mut Memory) -> Result<(), FitError> {
+    fn model(&mut self, fit: Result<(), FitError>, memory: &mut Memory) -> Result<bool, FitError> {
         let (pixels, workspace) = self.sampled(memory).ok_or(FitError::WorkspaceTooShort)?;
-        let params = &self.params.solve;
+        let params = self.params.solve;
         if FULL && fit.is_ok() && params.rejects_shadows() {
-            self.solution.reject_shadows(&pixels, params, workspace);
+            self.solution.reject_shadows(&pixels, &params, workspace);
         }
-        self.solution.model(&pixels, fit, params, workspace)
+        self.solution.take_regression(&pixels, fit, params.lmeds.method)?;
+        let has_model = self.decide_on_model();
+        if has_model {
+            self.solution.reject_lengths(&pixels, params.lmeds.rejection, workspace);
+        }
+        Ok(has_model)
+    }
+
+    /// Whether there is a model of the colors.
+    #[inline(never)]
+    fn decide_on_model(&mut self) -> bool {
+        let model = self.solution.model(self.params.solve.lmeds.method);
+        if let Err(reason) = model {
+            self.solution.end_without_model(reason);
+        }
+        model.is_ok()
     }
 
     /// The sample as pixels, and the room behind it.
@@ -159,6 +174,10 @@ impl State {
         self.solution.inlier_count = self.inlier_count;
         self.solution.tilts = self.tilts();
         self.history = self.differences;
+        if self.solution.tilts.is_none() {
+            self.solution.outcome = Outcome::NoTilt;
+            return self.go_on(false, Pass::Colors);
+        }
         let goes_on = self.find_candidates(memory);
         self.go_on(goes_on, Pass::Slants);
     }

@@ -5,8 +5,9 @@ use super::memory::{Memory, rows_len};
 use super::pass::Pass;
 use super::state::{Held, State};
 use crate::math::mat3::{self, Mat3};
-use crate::orientation::joint::{CellSums, STRIP};
+use crate::orientation::joint::{CellSums, Joint, STRIP};
 use crate::picture::{Image, Window};
+use crate::solve::Oriented;
 
 impl State {
     pub(super) fn begin_outward(&mut self, memory: &mut Memory) {
@@ -45,13 +46,21 @@ impl State {
         self.solution.inlier_count = self.inlier_count;
         let Held::CellSums(sums) = self.held else { return self.go_on(true, Pass::Tilts) };
         let joint = sums.end(memory.values);
-        if self.solution.orient(joint, &self.params.solve) {
+        if self.orient_jointly(joint) {
             return self.go_on(false, Pass::Tilts);
         }
         let window_sums = sums.window_sums(memory.values);
         let next = if window_sums.is_some() { Pass::Integrability } else { Pass::Tilts };
         self.held = window_sums.map_or(Held::Nothing, Held::WindowSums);
         self.go_on(true, next);
+    }
+
+    /// Ends with this transformation, if there is one; whether there is.
+    fn orient_jointly(&mut self, joint: Option<Joint>) -> bool {
+        let (Some(joint), Some(ellipsoid)) = (joint, &self.solution.ellipsoid) else { return false };
+        let oriented = Oriented::jointly(joint, ellipsoid, self.params.solve.rank_threshold);
+        self.solution.take_orientation(Ok(oriented));
+        true
     }
 
     pub(super) fn begin_integrability(&mut self, memory: &mut Memory) {
@@ -74,7 +83,7 @@ impl State {
             Held::WindowSums(window_sums) => window_sums.end(memory.values),
             _ => None,
         };
-        let is_oriented = self.solution.orient(joint, &self.params.solve);
+        let is_oriented = self.orient_jointly(joint);
         self.go_on(!is_oriented, Pass::Tilts);
     }
 }

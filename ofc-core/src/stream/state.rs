@@ -105,7 +105,7 @@ impl State {
             scale: 1.0,
             drift: None,
             concluded: false,
-            solution: Solution::unsolved(PixelCounts::default(), usable),
+            solution: Solution::new(PixelCounts::default(), usable),
         }
     }
 
