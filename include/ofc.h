@@ -1134,6 +1134,22 @@ ofc_status ofc_solution_covariance(const ofc_solution *solution, ofc_covariance 
 ofc_status ofc_normals_uncertainty(const ofc_image *image, const ofc_solution *solution, float *angle_rad,
                                    size_t angle_stride_bytes);
 
+/// The matte weight of each normal that ofc_normals_compute() makes, by Wolff's model of smooth dielectrics (plastic, glaze, paint, a
+/// gel): how much less light such a surface sends to the camera than a matte one of the linear model, because of the angle at which
+/// it is seen. 1 where a normal faces the camera; with a refractive index of 1.5 still 0.95 at 60 degrees, 0.86 at 70, 0.64 at 80
+/// and 0 at 90. Where it is small, trust colors the less: fits, depth and shading can count a pixel by it.
+///
+/// @param image     The picture.
+/// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
+/// @param refractive_index  Of the surface, at least 1: 1.5 for most plastics, glazes and paints, 1.4 for silicone; 1 makes 1 everywhere.
+/// @param weight    Output: height rows of width floats, row 0 at the top; 0 to 1, and 0 where there is no normal.
+/// @param weight_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+///
+/// Reference: section 5; L. B. Wolff, JOSA A 11, 1994.
+ofc_status ofc_normals_matte_weight(const ofc_image *image, const ofc_solution *solution, double refractive_index,
+                                    float *weight, size_t weight_stride_bytes);
+
 /// A depth map in the caller's memory, row 0 at the top, depth growing toward the camera. Initialize all of it: fields
 /// not set must be zero.
 typedef struct ofc_depth_map {
@@ -1573,21 +1589,42 @@ ofc_status ofc_segment(const ofc_image *image, const ofc_segment_params *params,
 /// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER for a label out of range; the status of an invalid argument.
 ofc_status ofc_segment_mark(const uint16_t *labels, int32_t width, int32_t height, int32_t label, uint8_t *mask);
 
+/// What lights and surface a patch is of. Its colors say so as far as this table goes, and what they do not say is 0:
+///
+/// | colors of the patch                                    | light | surface |
+/// | three dimensions                                       | 3     | 3       |
+/// | two dimensions, filling a part of their plane          | 2     | 3       |
+/// | two dimensions, on a conic: the normals lie in a plane | 0     | 2       |
+/// | one dimension, of varying brightness                   | 1     | 0       |
+/// | one color: the normals are all the same                | 0     | 1       |
+/// | fewer than half of the pixels are usable               | 0     | 0       |
+///
+/// Cylinders and other surfaces that bend in one direction have rank 2, planes rank 1; lights in one plane or of two colors have
+/// rank 2, one light or lights of one color rank 1.
+typedef struct ofc_patch_class {
+    uint8_t light;   ///< Rank of the light, 1 to 3; 0 where the colors do not say.
+    uint8_t surface; ///< Rank of the surface, 1 to 3; 0 where the colors do not say.
+} ofc_patch_class;
+
 /// Patches in a row (and, with height for width, in a column) of a picture: width over side, rounded up; 0 for a width
 /// or side that is not positive.
 int32_t ofc_rank_patches_count(int32_t width, int32_t side);
 
-/// Classifies a picture's patches by the rank of their colors.
+/// Classifies a picture's patches by the rank of their light and the rank of their surface.
 ///
 /// @param image  The picture.
-/// @param side   Side of a patch, 3 to 64 pixels; patches at the right and lower edges may be smaller.
+/// @param side   Side of a patch, 3 to 64 pixels; patches at the right and lower edges may be smaller. The larger it is, the less
+///               a surface must bend for that to be seen.
 /// @param noise  Standard deviation of a channel in pixel values, > 0; ofc_rank has it.
-/// @param ranks  Output: ofc_rank_patches_count() a row and a column, rows without gaps: 1 to 3, or 0 where fewer than
-///               half of the pixels are usable.
+/// @param light  Rank of the light that all patches share, 1 to 3, where it is known: it fills in what a patch does not say, and a
+///               patch that says another rank keeps it. ofc_rank says 3 where its `colors` are 3, 2 where `colors` are 2 and
+///               `normals` 3, and 1 where `colors` are 1 and `normals` 0. 0 where it is not known.
+/// @param classes  Output: ofc_rank_patches_count() a row and a column, rows without gaps.
 /// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
 ///
 /// Reference: section 1.2; A. P. Petrov, L. L. Kontsevich, JOSA A 11, 1994.
-ofc_status ofc_rank_patches(const ofc_image *image, int32_t side, double noise, uint8_t *ranks);
+ofc_status ofc_rank_patches(const ofc_image *image, int32_t side, double noise, int32_t light,
+                            ofc_patch_class *classes);
 
 /* ---- The version ------------------------------------------------------------------------------------------------ */
 
