@@ -1,15 +1,18 @@
 //! Pentland's tilt against explicit loops over pixels, and on surfaces where the answer is known.
 
 use ofc_core::light::tilt::Tilts;
-use ofc_core::light::tilt::pentland::tilts;
+use ofc_core::light::tilt::pentland::{MAX_STEP, tilts, tilts_along};
 use ofc_core::math::rng::Rng;
 use ofc_tests::linear::eliminate;
 use ofc_tests::linear_scenes::{Scene, sphere, three_lights};
 use ofc_tests::tolerances::{REORDERED_SUM, SYMMETRIC_TILT};
-use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
+use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Eqs. 20-21 by definition: (dx, dy) steps with y up, mean differences, and a regression over the four directions.
-fn oracle(scene: &Scene, mask: &[u8]) -> Option<[[f64; 2]; 3]> {
+/// The axes and the diagonals.
+const FOUR: [[i32; 2]; 4] = [[1, 0], [0, 1], [1, 1], [-1, 1]];
+
+/// Eqs. 20-21 by definition: (dx, dy) steps with y up, mean differences, and a regression over the directions.
+fn oracle(scene: &Scene, mask: &[u8], steps: &[[i32; 2]]) -> Option<[[f64; 2]; 3]> {
     let (width, height) = (scene.width.cast_signed(), scene.height.cast_signed());
     let inside = |x: isize, y: isize| {
         let within = (0..width).contains(&x) && (0..height).contains(&y);
@@ -18,20 +21,20 @@ fn oracle(scene: &Scene, mask: &[u8]) -> Option<[[f64; 2]; 3]> {
     let mut gradients = [[0.0; 2]; 3];
     for (channel, gradient) in gradients.iter_mut().enumerate() {
         let (mut normal, mut right) = ([[0.0; 2]; 2], [0.0; 2]);
-        for (dx, dy) in [(1_isize, 0_isize), (0, 1), (1, 1), (-1, 1)] {
+        for [dx, dy] in steps.iter().map(|step| step.map(|pixels| pixels as isize)) {
+            let length = (dx as f64).hypot(dy as f64);
             let (mut sum, mut count) = (0.0, 0.0);
             for y in 0..height {
                 for x in 0..width {
                     let (Some(from), Some(to)) = (inside(x, y), inside(x + dx, y - dy)) else { continue };
                     let value = |i: usize| f64::from(scene.colors[i][channel] as f32);
-                    sum += (value(to) - value(from)) / if dx * dy == 0 { 1.0 } else { SQRT_2 };
+                    sum += (value(to) - value(from)) / length;
                     count += 1.0;
                 }
             }
             if count == 0.0 {
                 return None;
             }
-            let length = if dx * dy == 0 { 1.0 } else { SQRT_2 };
             let s = [dx as f64 / length, dy as f64 / length];
             for i in 0..2 {
                 right[i] += s[i] * sum / count;
@@ -68,7 +71,7 @@ fn explicit_loops_agree_on_every_width_around_the_window() {
                 });
                 let mask: Vec<u8> = (0..width * height).map(|_| u8::from(rng.below(10) >= holes)).collect();
                 let found = core(&scene, &mask);
-                let Some(wanted) = oracle(&scene, &mask) else {
+                let Some(wanted) = oracle(&scene, &mask, &FOUR) else {
                     assert_eq!(found, None);
                     without += 1;
                     continue;
@@ -85,6 +88,46 @@ fn explicit_loops_agree_on_every_width_around_the_window() {
         }
     }
     assert!(without >= 16, "one-pixel rows and columns have no diagonals: {without}");
+}
+
+#[test]
+fn any_set_of_directions_is_fitted() {
+    let mut rng = Rng::new(43);
+    let scene = Scene::paint(131, 40, |x, y| {
+        [2.0 * x as f64 - y as f64 + 9.0 * rng.unit(), y as f64 * 3.0 + 9.0 * rng.unit(), 200.0 * rng.unit()]
+    });
+    let mask: Vec<u8> = (0..131 * 40).map(|_| u8::from(rng.below(10) >= 2)).collect();
+    let encoded = scene.encode();
+    let image = encoded.image().with_mask(&mask, scene.width).expect("sizes agree");
+    let along = |steps: &[[i32; 2]]| tilts_along(&image, |window| window.masked, steps);
+    let sets: [&[[i32; 2]]; 5] = [
+        &FOUR,
+        &[[1, 0], [0, 1]],
+        &[[2, 1], [-1, 3], [5, 0]],
+        &[[-1, -2], [3, -1], [0, -4], [-7, 2], [-3, 0]],
+        &[[70, 1], [1, 20]],
+    ];
+    for steps in sets {
+        let found = along(steps).expect("pairs along every step");
+        let wanted = oracle(&scene, &mask, steps).expect("pairs along every step");
+        for ((tilt, gradient), wanted) in found.tilts.iter().zip(found.gradients).zip(wanted) {
+            for (got, wanted) in gradient.into_iter().zip(wanted) {
+                assert!((got - wanted).abs() <= REORDERED_SUM * 255.0, "{steps:?}: {got} {wanted}");
+            }
+            assert!((tilt - gradient[1].atan2(gradient[0])).abs() < REORDERED_SUM);
+        }
+    }
+    // Parallel, no step, too long a step, longer than the picture.
+    for none in [
+        &[[1, 2], [-2, -4]][..],
+        &[[1, 0]],
+        &[],
+        &[[0, 0], [1, 0]],
+        &[[MAX_STEP + 1, 0], [0, 1]],
+        &[[1, 0], [0, 40]],
+    ] {
+        assert_eq!(along(none), None, "{none:?}");
+    }
 }
 
 #[test]

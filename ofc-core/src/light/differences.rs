@@ -90,3 +90,31 @@ pub fn color(window: &Window, i: usize) -> [f64; 3] {
     let [r, g, b] = window.pixel(i);
     [f64::from(r), f64::from(g), f64::from(b)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// So many pairs whose differences are these.
+    fn pairs(differences: &[[f32; 3]]) -> Differences<1> {
+        let mut sums = Differences::NONE;
+        for &[r, g, b] in differences {
+            sums.add_pair([r + 5.0, g + 6.0, b + 7.0], [5.0, 6.0, 7.0]);
+        }
+        sums
+    }
+
+    #[test]
+    fn blended_differences_are_weighted_and_counted() {
+        let mut sums = pairs(&[[1.0, -2.0, 4.0]; 8]);
+        sums.blend(&pairs(&[[3.0, 8.0, -1.0], [5.0, 0.0, -1.0]]), 0.75, 0.5);
+        // Sums 8 x difference x 3/4 + half of the others, over 6 + 2 pairs.
+        let wanted = [(6.0 + 4.0) / 8.0, (-12.0 + 4.0) / 8.0, (24.0 - 1.0) / 8.0];
+        for (channel, wanted) in wanted.into_iter().enumerate() {
+            assert_eq!(sums.mean(channel, 1.0), Some(wanted));
+            assert_eq!(sums.mean(channel, 0.25), Some(0.25 * wanted));
+        }
+        assert_eq!(sums.mean(3, 1.0), None);
+        assert_eq!(Differences::<1>::NONE.mean(0, 1.0), None);
+    }
+}

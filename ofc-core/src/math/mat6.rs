@@ -210,6 +210,24 @@ mod tests {
     }
 
     #[test]
+    fn rows_and_columns_are_scaled_by_their_own_factors() {
+        let mut rng = Rng::new(6);
+        let matrix = random_matrix(&mut rng);
+        let factors = [1.0, -2.0, 4.0, 0.5, 8.0, -0.25];
+        let mut scaled = matrix;
+        scale(&mut scaled, &factors);
+        for (j, (column, before)) in scaled.iter().zip(&matrix).enumerate() {
+            for (i, (entry, before)) in column.iter().zip(before).enumerate() {
+                // Powers of two: exact.
+                assert_eq!(*entry, before * factors[i] * factors[j]);
+            }
+            assert_eq!(diagonal(&scaled)[j], scaled[j][j]);
+        }
+        let largest = scaled.iter().flatten().map(|entry| entry.abs()).fold(0.0, f64::max);
+        assert_eq!(max_abs(&scaled), largest);
+    }
+
+    #[test]
     fn a_solution_solves() {
         let mut rng = Rng::new(5);
         for _ in 0..100 {

@@ -116,6 +116,34 @@ mod tests {
     }
 
     #[test]
+    fn normal_pairs_are_normal_and_independent() {
+        const PAIRS: u32 = 100_000;
+        let mut rng = Rng::new(11);
+        let (mut sums, mut powers, mut product, mut beyond) = ([0.0; 2], [[0.0; 3]; 2], 0.0, 0);
+        for _ in 0..PAIRS {
+            let pair = rng.normal_pair();
+            for ((sum, powers), x) in sums.iter_mut().zip(&mut powers).zip(pair) {
+                *sum += x;
+                for (sum, power) in powers.iter_mut().zip([x * x, x * x * x, x * x * x * x]) {
+                    *sum += power;
+                }
+                beyond += u32::from(x.abs() > 1.959_964);
+            }
+            product += pair[0] * pair[1];
+        }
+        let count = f64::from(PAIRS);
+        // Five standard errors of each moment.
+        for (sum, [second, third, fourth]) in sums.iter().zip(powers) {
+            assert!((sum / count).abs() < 0.016, "{sum}");
+            assert!((second / count - 1.0).abs() < 0.023, "{second}");
+            assert!((third / count).abs() < 0.062, "{third}");
+            assert!((fourth / count - 3.0).abs() < 0.16, "{fourth}");
+        }
+        assert!((product / count).abs() < 0.016, "{product}");
+        assert!((f64::from(beyond) / (2.0 * count) - 0.05).abs() < 0.0025, "{beyond}");
+    }
+
+    #[test]
     fn below_stays_below() {
         let mut rng = Rng::new(7);
         assert_eq!(rng.below(0), 0);
