@@ -1,107 +1,99 @@
 //! Whether to believe an answer: self-checks and ranks.
 
-use crate::image::{ofc_image, pixel_count};
-use crate::orientation::solved;
-use crate::pointers::{Contract, bytes, plain, unless_null};
-use crate::render::ofc_depth_map;
-use crate::solve::ofc_solution;
-use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, OFC_STATUS_TOO_FEW_PIXELS, ensure, ofc_status,
-};
-use crate::twin::{FromC, ToC, to_c};
-use crate::types::{ofc_color_fit, ofc_inlier_test, ofc_tilts};
-use core::ffi::c_void;
+use crate::prelude::*;
 use ofc_core::check::{self, Check, Norms, Turn};
 use ofc_core::color::inliers::Inliers;
 use ofc_core::color::rank::{self, Rank};
 use ofc_core::color::regression::Estimate;
-use ofc_core::math::arena::Need;
 
-/// How well an answer explains its own picture. How to read it:
+/// How well a solution explains its own picture. How to read it:
 ///
-/// - `correlation` near 1 says that the linear model holds: channels relit from the recovered normals look like the input.
-///   The paper's egg reaches 0.9989; 0.99 is usual for a photograph of a matte surface. It says nothing of F's orthogonal
-///   transformation, which cancels.
-/// - `turn_rad` sees every wrong orthogonal transformation. It is the angle by which all normals would have to be turned to
-///   agree best with integrability and to point outward, and `turn_expected_rad` the angle to be expected of a right F.
-///   Normals turned by 10, 25 or 40 degrees about any axis show by 8, 20 and 32 degrees, the convex/concave twin by 110, a
-///   mirror image by 71. Several times the expected angle says that F is wrong; `convexity` near zero, that nothing says
-///   which of the twins is right. It is small by construction where F comes from OFC_ORIENTATION_JOINT.
-/// - `tilt_residual_rad`, the tilts of F minus the tilts that Pentland's estimator finds in the input, see a turn about the
-///   line of sight by its angle and the twin by 180 degrees. They are zero by construction where F follows those tilts, and up
-///   to 15 degrees for a right F on a closed shape that is not round; on relief that touches the frame they say nothing.
-/// - `tilt_difference_rad`, the same estimator on the relit picture minus on the input, is near zero when setting the normals
-///   to unit length changes nothing that tilts depend on. It sees no wrong orthogonal transformation.
-/// - `depth_angle_median_rad`, between the normals of the integrated surface and those of the colors, is a degree or two when
-///   the normals are those of one surface. A turn of 25 degrees about the line of sight makes it 6 to 13 degrees more, one about
-///   an axis in the picture hardly more than it was, and the twin is as good a surface.
-/// - `depth_tilt_difference_rad`, Pentland's tilts of the surface shaded with F minus those of the input, see a turn about the
-///   line of sight by about its angle, and other turns and the twin hardly or not at all.
-/// - `norm_median` is near 1 and the range narrow when most of the inliers obey the model.
+/// - `correlation` near 1 says that the linear model holds: channels relit from the recovered normals look like the
+///   input. The paper's egg reaches 0.9989; 0.99 is usual for a photograph of a matte surface. It does not see F's
+///   orthogonal transformation, which cancels.
+/// - `turn_rad` sees every wrong orthogonal transformation. It is the angle by which all normals would have to be
+///   turned to agree best with integrability and to point outward; `turn_expected_rad` is the angle to expect of a
+///   right F. Normals turned by 10, 25 or 40 degrees about any axis show as 8, 20 and 32 degrees, the convex/concave
+///   twin as 110, a mirror image as 71. Several times the expected angle says that F is wrong. A `convexity` near zero
+///   says that nothing tells which of the twins is right. `turn_rad` is small by construction where F comes from
+///   OFC_ORIENTATION_JOINT.
+/// - `tilt_residual_rad` sees a turn about the line of sight as its angle, and the twin as 180 degrees. It is zero by
+///   construction where F follows Pentland's tilts of the input, and up to 15 degrees for a right F on a closed shape
+///   that is not round. On relief that touches the frame it says nothing.
+/// - `tilt_difference_rad` is near zero when setting the normals to unit length changes nothing that tilts depend on.
+///   It sees no wrong orthogonal transformation.
+/// - `depth_angle_median_rad` is a degree or two when the normals belong to one surface. A turn of 25 degrees about the
+///   line of sight adds 6 to 13 degrees; a turn about an axis in the picture adds hardly anything, and the twin is as
+///   good a surface.
+/// - `depth_tilt_difference_rad` sees a turn about the line of sight as about its angle, and other turns and the twin
+///   hardly or not at all.
+/// - `norm_median` is near 1, and `norm_min` and `norm_max` are near it, when most of the inliers obey the model.
 /// - `largest_p` above 0.05 says that a coefficient of C could as well be zero.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_check_result {
-    /// Correlation of each channel with the relit one, over the inliers; 0 where one of them is constant.
+    /// The correlation of each channel with the relit channel, over the inliers; 0 where one of them is constant.
     pub correlation: [f64; 3],
-    /// Median length of the recovered normals before they are set to 1.
+    /// The median length of the recovered normals before they are set to 1.
     pub norm_median: f64,
-    /// Smallest length.
+    /// The smallest length of these normals.
     pub norm_min: f64,
-    /// Largest length.
+    /// The largest length of these normals.
     pub norm_max: f64,
     /// Pentland's tilts of the input; zero where there are none.
     pub tilts: ofc_tilts,
     /// Pentland's tilts of the relit picture; zero where there are none.
     pub relit_tilts: ofc_tilts,
-    /// Tilts of the relit picture minus those of the input, in (-pi, pi]; zero where one has none.
+    /// Tilts of the relit picture minus tilts of the input, in radians, in (-pi, pi]; zero where one picture has none.
     pub tilt_difference_rad: [f64; 3],
-    /// Tilts of the rows of F minus those of the input, in (-pi, pi]; zero where it has none.
+    /// Tilts of the rows of F minus tilts of the input, in radians, in (-pi, pi]; zero where the input has none.
     pub tilt_residual_rad: [f64; 3],
-    /// Median angle between the normals of the integrated surface and those of the colors; zero without a surface.
+    /// The median angle in radians between the normals of the integrated surface and the normals of the colors; zero
+    /// without a surface.
     pub depth_angle_median_rad: f64,
     /// Pentland's tilts of the integrated surface shaded with F; zero where there are none.
     pub depth_tilts: ofc_tilts,
-    /// These minus the tilts of the input, in (-pi, pi]; zero where one has none.
+    /// Tilts of the shaded surface minus tilts of the input, in radians, in (-pi, pi]; zero where one picture has none.
     pub depth_tilt_difference_rad: [f64; 3],
-    /// Largest p value of the six coefficients of C.
+    /// The largest p value of the six coefficients of C.
     pub largest_p: f64,
-    /// Angle between the normals of F and those that agree best with integrability and outward normals, the root mean square
-    /// over all directions; zero where the picture does not say.
+    /// The root mean square angle over all directions, in radians, between the normals of F and the normals that agree
+    /// best with integrability and outward normals; zero where the picture does not determine it.
     pub turn_rad: f64,
-    /// The angle to be expected of a right F, as far as the picture tells.
+    /// The angle in radians to expect of a right F, as far as the picture tells.
     pub turn_expected_rad: f64,
     /// How clear the choice between a surface and its convex/concave twin is, from 0 to 1.
     pub convexity: f64,
-    /// Pixels that were compared.
+    /// How many pixels were compared.
     pub inlier_count: i32,
     /// 1 when both pictures have tilts, 0 otherwise.
     pub has_tilts: i32,
-    /// Inliers that the integrated surface covers; zero without one.
+    /// How many inliers the integrated surface covers; zero without a surface.
     pub depth_pixel_count: i32,
     /// 1 when the shaded surface and the input have tilts, 0 otherwise.
     pub has_depth_tilts: i32,
-    /// 1 when the picture says how far the normals are turned, 0 otherwise: it may be too small, or its surface too scattered.
+    /// 1 when the picture determines `turn_rad`, 0 when it is too small or its surface too scattered.
     pub has_turn: i32,
     /// Zero.
     pub reserved: u32,
 }
 
-/// Effective ranks, and the singular values behind them. F can be recovered where both ranks are 3.
+/// Effective ranks of colors and normals, and the singular values behind them. F is determined where both ranks are 3.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_rank {
     /// Root mean square of the colors along their principal axes, descending, in pixel values.
     pub color_deviations: [f64; 3],
-    /// The noise that they are compared with.
+    /// The noise that `color_deviations` are compared with, in pixel values.
     pub color_noise: f64,
     /// Root mean square of the normals along their principal axes, descending; zero in directions that are not seen.
     pub normal_deviations: [f64; 3],
-    /// The noise that they are compared with.
+    /// The noise that `normal_deviations` are compared with.
     pub normal_noise: f64,
-    /// Of the colors, 1 to 3; 0 where there are no pixels.
+    /// The rank of the colors, 1 to 3; 0 where there are no pixels.
     pub colors: i32,
-    /// Of the normals, 1 to 3; 0 where the colors do not say: those of one light, or of a gray picture.
+    /// The rank of the normals, 1 to 3; 0 where the colors do not determine it, as under one light or in a gray
+    /// picture.
     pub normals: i32,
 }
 
@@ -152,25 +144,24 @@ impl ToC<ofc_check_result> for Check {
     }
 }
 
-/// Bytes of workspace that ofc_check() needs: 8 a pixel.
-///
-/// @return The size, or 0 when an argument is invalid.
+/// Says how many bytes of workspace ofc_check() needs: 8 for each pixel.
+/// @param width,height  Size of the picture.
+/// @return The size; 0 when an argument is invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_check_workspace_size(width: i32, height: i32) -> usize {
     bytes(Need::of_singles(check::workspace_len(pixel_count(width, height))))
 }
 
-/// Checks a solution against its own picture; the struct says how to read the result.
-///
-/// @param image      The picture that was solved, or another frame under the same lights.
-/// @param solution   What ofc_solve() wrote with OFC_STATUS_OK.
-/// @param depth      The surface that ofc_depth_integrate() made of the normals, as large as the picture; may be NULL. There
-///                   is no surface where its depth is not finite.
-/// @param workspace  ofc_check_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter.
-/// @param workspace_bytes  Its size.
-/// @param result     Output.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_TOO_FEW_PIXELS when there are no inliers;
-///         OFC_STATUS_INVALID_PARAMETER for a surface of another size; the status of an invalid argument.
+/// Checks a solution against its own picture. The documentation of ofc_check_result says how to read the result.
+/// @param image  The picture that was solved, or another frame under the same lights.
+/// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
+/// @param depth  The surface that ofc_depth_integrate() made of the normals, as large as the picture; may be NULL.
+///     There is no surface where its depth is not finite.
+/// @param workspace  ofc_check_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param result  Output: the checks.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_TOO_FEW_PIXELS when there are no inliers; an argument
+///     status, OFC_STATUS_INVALID_PARAMETER for a surface of another size.
 ///
 /// Reference: sections 4-6.
 #[unsafe(no_mangle)]
@@ -199,27 +190,25 @@ pub unsafe extern "C" fn ofc_check(
     })
 }
 
-/// The effective ranks of a picture's colors and normals.
-///
-/// @param image    The picture.
-/// @param inliers  The pixels to use; NULL for every usable pixel of the picture.
-/// @param fit      The regression over them, from ofc_lmeds_fit(); NULL where it was refused.
-/// @param rank     Output.
-/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS when there is no inlier; OFC_STATUS_INVALID_PARAMETER for a fit that
-///         is not finite; the status of an invalid argument.
+/// Computes the effective ranks of a picture's colors and normals.
+/// @param image  The picture.
+/// @param inlier_test  Which pixels to use; NULL for every usable pixel.
+/// @param fit  The regression over these pixels, from ofc_lmeds_fit(); NULL where there is none.
+/// @param rank  Output: the ranks.
+/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS when there is no inlier; an argument status.
 ///
 /// Reference: sections 2 and 6; A. P. Petrov, L. L. Kontsevich, JOSA A 11, 1994.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_rank_compute(
     image: *const ofc_image,
-    inliers: *const ofc_inlier_test,
+    inlier_test: *const ofc_inlier_test,
     fit: *const ofc_color_fit,
     rank: *mut ofc_rank,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
     unsafe { Contract::kept() }.call(|call| {
         let picture = call.image(image)?;
-        let test = call.inliers(inliers, &picture)?;
+        let test = call.inlier_test(inlier_test, &picture)?;
         let fit = unless_null(fit, || call.input(fit))?;
         let fit = fit.map(|fit| (fit.coefficients.map(|c| c.value), fit.residual_deviation));
         let rank = call.output(rank)?;

@@ -1,105 +1,99 @@
 //! Depth from normals or gradients.
 
-use crate::image::{dimension, size_of_map};
-use crate::pointers::{Call, Contract, Plain, bytes, plain, unless_null};
-use crate::render::ofc_depth_map;
-use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NOT_CONVERGED, OFC_STATUS_NULL_POINTER, OFC_STATUS_OK,
-    OFC_STATUS_STRIDE_TOO_SMALL, Refusal, ensure, ofc_status,
-};
-use crate::twin::{ToC, constants, from_c, to_c};
-use core::ffi::c_void;
-use ofc_core::math::arena::Need;
+use crate::prelude::*;
 use ofc_core::render::{Rows, normals_from_depth};
 use ofc_core::surface::depth::{self, DepthInput, DepthParams, DepthResult, Method, Plane, Slopes};
 
-/// What to do where a slope is unusable: its normal is not finite or faces away, or its weight is zero.
+/// What to do where a slope is unusable because its normal is not finite or faces away, or its weight is zero: one of
+/// OFC_DEPTH_*.
 pub type ofc_depth_method = i32;
-/// Least squares over the usable pixels of the mask; there is no depth elsewhere.
+/// Least squares over the usable pixels of the mask; other pixels have no depth.
 pub const OFC_DEPTH_POISSON: i32 = 0;
-/// The paper's own choice (section 5): least squares over the whole rectangle, flat (p = q = 0) outside the mask and at
-/// unusable pixels. Depth is given in the mask.
+/// The method of the paper (section 5): least squares over the whole rectangle, flat (p = q = 0) outside of the mask
+/// and at unusable pixels. The pixels of the mask have a depth.
 pub const OFC_DEPTH_PAPER: i32 = 1;
-/// Harris's coupled depth/slope model: smooth slopes are fitted to the usable pixels and span the others, then depth is
-/// fitted to these slopes over the whole mask.
+/// Harris's coupled depth/slope model: smooth slopes are fitted to the usable pixels and bridge the others, and depth
+/// is fitted to these slopes over the whole mask.
 pub const OFC_DEPTH_COUPLED: i32 = 2;
 
-/// What is integrated. Initialize all of it: fields not set must be zero. Row 0 is at the top, floats and their strides
-/// are aligned to four bytes; the stride of a map that is NULL does not matter.
+/// What ofc_depth_integrate() integrates. Initialize the whole struct: fields that are not set must be zero.
+///
+/// Row 0 is the top row. Floats and their strides are aligned to four bytes. Strides of maps that are NULL are ignored.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_depth_input {
-    /// (x, y, z) floats a pixel: x right, y up, z toward the camera, of any length. NULL when p and q are given. A normal
-    /// that is not finite, zero, or faces away is unusable.
+    /// (x right, y up, z toward the camera) floats of any length, unusable where not finite or z <= 0; NULL with p and
+    /// q.
     pub normals: *const f32,
-    /// Bytes from a row to the next.
+    /// How many bytes lie from one row to the next.
     pub normals_stride_bytes: usize,
-    /// dz/dx, a float a pixel; NULL when normals are given.
+    /// dz/dx, a float for each pixel; NULL when normals are given.
     pub p: *const f32,
-    /// Bytes from a row to the next.
+    /// How many bytes lie from one row to the next.
     pub p_stride_bytes: usize,
-    /// dz/dy, y up; NULL when normals are given.
+    /// dz/dy with y up, a float for each pixel; NULL when normals are given.
     pub q: *const f32,
-    /// Bytes from a row to the next.
+    /// How many bytes lie from one row to the next.
     pub q_stride_bytes: usize,
-    /// NULL, or a byte a pixel: depth is wanted where it is not zero.
+    /// A byte for each pixel, which has a depth where the byte is not zero; or NULL.
     pub mask: *const u8,
-    /// Bytes from a row to the next.
+    /// How many bytes lie from one row to the next.
     pub mask_stride_bytes: usize,
-    /// NULL, or a float a pixel: how far to trust its slope, 1 by default. Zero, negative and non-finite make it unusable;
-    /// others are limited to [1e-4, 1e4].
+    /// Weights of the slopes, limited to [1e-4, 1e4]; or NULL for 1. A slope is unusable where its weight is not
+    /// positive and finite.
     pub weights: *const f32,
-    /// Bytes from a row to the next.
+    /// How many bytes lie from one row to the next.
     pub weights_stride_bytes: usize,
-    /// NULL, or known depths in the unit of the result, not finite where nothing is known.
+    /// Known depths in the unit of the result, not finite where unknown; or NULL.
     pub prior: *const f32,
-    /// Bytes from a row to the next.
+    /// How many bytes lie from one row to the next.
     pub prior_stride_bytes: usize,
-    /// Pixels in a row, at least 1.
+    /// How many pixels are in a row, at least 1.
     pub width: i32,
-    /// Rows, at least 1.
+    /// How many rows there are, at least 1.
     pub height: i32,
 }
 
-/// How to integrate. Set by ofc_depth_params_default().
+/// How ofc_depth_integrate() works. Set by ofc_depth_params_default().
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_depth_params {
-    /// Width and height of a pixel on the surface, in the unit that depth is wanted in: in [1e-30, 1e30]. Default 1.
+    /// Width and height of a pixel on the surface, in the unit of the depth: in [1e-30, 1e30]. Default 1.
     pub pixel_pitch: f64,
-    /// The residual to reach, as a part of the right side's norm: in [1e-6, 1]. Default 1e-4.
+    /// The residual to reach, relative to the norm of the right-hand side: in [1e-6, 1]. Default 1e-4.
     pub tolerance: f64,
     /// Normals with n3 / |n| below this lose weight with its square, and their slope stops growing: in [0.001, 1].
-    /// Default 0.05, slopes up to 20.
+    /// Default 0.05, for slopes up to 20.
     pub min_n3: f64,
-    /// Weight of a pixel of the prior against the equation of one edge; 0 ignores the prior: in [0, 1e6]. Default 1e-3.
+    /// Weight of a pixel of the prior relative to the equation of one edge, in [0, 1e6]; 0 ignores the prior. Default
+    /// 1e-3.
     pub prior_weight: f64,
-    /// For OFC_DEPTH_COUPLED, the weight of the squared difference of neighboring slopes against that of a pixel's slope
-    /// from its data: in [1e-3, 1e3]. Default 0.1.
+    /// For OFC_DEPTH_COUPLED: the weight of the squared difference of neighboring slopes relative to the weight of the
+    /// squared difference of a pixel's slope from its data, in [1e-3, 1e3]. Default 0.1.
     pub smoothness: f64,
-    /// OFC_DEPTH_POISSON by default.
+    /// One of OFC_DEPTH_*. Default OFC_DEPTH_POISSON.
     pub method: ofc_depth_method,
-    /// Multigrid cycles at most for each system of equations, at least 1. Default 1000; 4 to 15 are usual.
+    /// At most so many multigrid cycles for each system of equations, at least 1; 4 to 15 are usual. Default 1000.
     pub max_cycles: i32,
     /// Must be zero.
     pub reserved: [u32; 4],
 }
 
-/// How the integration went.
+/// How ofc_depth_integrate() went.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_depth_result {
-    /// The last residual, as a part of the right side's norm, before the depth is rounded to float; of a rectangle that was
-    /// solved directly that of the floats, which rounding alone leaves (1e-3 for a million pixels).
+    /// The last residual relative to the norm of the right-hand side, before the depth is rounded to floats. For a
+    /// rectangle that is solved directly it is the residual after rounding (1e-3 for a million pixels).
     pub residual: f64,
-    /// Multigrid cycles, of all systems of equations together; 0 for a rectangle without gaps, weights and prior, which is
-    /// solved directly where one of its sides has no prime factor above 7.
+    /// How many multigrid cycles all systems of equations took together. Zero for a rectangle without gaps, weights and
+    /// prior, which is solved directly where one of its sides has no prime factor above 7.
     pub cycles: i32,
-    /// Connected regions. Each has zero mean depth unless the prior reaches into it.
+    /// How many connected regions there are. Each has zero mean depth unless the prior reaches into it.
     pub regions: i32,
-    /// Pixels that have a depth.
+    /// How many pixels have a depth.
     pub pixel_count: i32,
-    /// Pixels of the mask that were unusable.
+    /// How many pixels of the mask were unusable.
     pub excluded_count: i32,
     /// 1 when the tolerance was reached, or what floats can hold; 0 otherwise.
     pub converged: i32,
@@ -121,9 +115,8 @@ to_c!(DepthResult => ofc_depth_result {
 } zero { reserved });
 
 /// Sets every field to its default.
-///
-/// @param params  Output.
-/// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+/// @param params  Output: the parameters.
+/// @return OFC_STATUS_OK; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_depth_params_default(params: *mut ofc_depth_params) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -133,9 +126,9 @@ pub unsafe extern "C" fn ofc_depth_params_default(params: *mut ofc_depth_params)
     })
 }
 
-/// Bytes of workspace that ofc_depth_integrate() needs: about 23 a pixel, for every method.
-///
-/// @return The size, or 0 when an argument is invalid or there are more than 2^29 - 1 pixels.
+/// Says how many bytes of workspace ofc_depth_integrate() needs: about 23 for each pixel, with every method.
+/// @param width,height  Size of the input.
+/// @return The size; 0 when an argument is invalid or there are more than 2^29 - 1 pixels.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_depth_workspace_size(width: i32, height: i32) -> usize {
     let (width, height) = (dimension(width), dimension(height));
@@ -161,24 +154,22 @@ fn plane<'a, T: Plain>(
 
 /// Integrates normals or gradients into depth, which grows toward the camera.
 ///
-/// The depths of two neighboring pixels should differ by the mean of their slopes times the pixel pitch; depth is the
-/// least-squares solution of these equations, with natural boundaries, found by conjugate gradients with geometric
-/// multigrid as preconditioner. Unconnected regions have zero mean each.
+/// The depths of neighboring pixels should differ by the mean of their slopes times the pixel pitch. These equations
+/// are solved in least squares with natural boundaries, by conjugate gradients with multigrid. Each connected region
+/// has zero mean.
+/// @param input  What to integrate: normals, or p and q, but not both.
+/// @param params  The parameters.
+/// @param workspace  ofc_depth_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param depth  Output: height rows of width floats; NaN where there is no depth.
+/// @param depth_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @param result  Output: how it went.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_CONVERGED, outputs written, when max_cycles were not enough;
+///     OFC_STATUS_TOO_FEW_PIXELS when no pixel of the mask is usable; an argument status, OFC_STATUS_INVALID_PARAMETER
+///     also for normals with p or q.
 ///
-/// @param input   What is integrated: normals, or p and q; not both.
-/// @param params  See the struct.
-/// @param workspace  ofc_depth_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter.
-/// @param workspace_bytes  Its size.
-/// @param depth   Output: a float a pixel; NaN where there is no depth. Bytes between the rows stay as they are.
-/// @param depth_stride_bytes  Bytes from a row to the next, a multiple of 4.
-/// @param result  Output.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_CONVERGED with depth and result written when max_cycles were not enough;
-///         OFC_STATUS_TOO_FEW_PIXELS when no pixel of the mask is usable; OFC_STATUS_INVALID_PARAMETER for a parameter out
-///         of its range and for both normals and gradients; the status of an invalid argument.
-///
-/// Stack: less than 4 KiB.
-///
-/// Reference: section 5; J. G. Harris, "A new approach to surface reconstruction: the coupled depth/slope model", ICCV 1987.
+/// Stack: below 4 KiB. Reference: section 5; J. G. Harris, "A new approach to surface reconstruction: the coupled
+/// depth/slope model", ICCV 1987.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_depth_integrate(
     input: *const ofc_depth_input,
@@ -221,12 +212,13 @@ pub unsafe extern "C" fn ofc_depth_integrate(
     })
 }
 
-/// Unit normals of a depth map: of central differences of its depths, one-sided at the borders of picture, mask and surface.
-///
-/// @param depth    The surface; there is none where the depth is not finite.
-/// @param normals  Output: height rows of width times (x, y, z) floats, zero where there is no surface.
-/// @param normals_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
-/// @return OFC_STATUS_OK or the status of an invalid argument.
+/// Computes the unit normals of a depth map, from central differences of its depths, one-sided at the borders of
+/// picture, mask and surface.
+/// @param depth  The surface. There is none where the depth is not finite.
+/// @param normals  Output: height rows of width (x, y, z) floats, x right, y up, z toward the camera; zero where there
+///     is no surface.
+/// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @return OFC_STATUS_OK; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_depth_normals(
     depth: *const ofc_depth_map,

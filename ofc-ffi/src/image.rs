@@ -1,75 +1,69 @@
 //! The picture as C describes it.
 
-use crate::pointers::{Call, Plain, plain, unless_null};
-use crate::status::{
-    OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_RESERVED_NOT_ZERO,
-    OFC_STATUS_TOO_LARGE, OFC_STATUS_UNKNOWN_FORMAT, Refusal, ensure,
-};
-use crate::types::ofc_inlier_test;
-use core::ffi::c_void;
+use crate::prelude::*;
 use ofc_core::color::inliers::Inliers;
 use ofc_core::picture::{Image, MAX_PIXELS, Order, Sample, Usable, span};
 
-/// How pixels are stored: one of OFC_PIXEL_*. 16-bit and float samples are in the machine's byte order.
+/// How a picture stores its pixels: one of OFC_PIXEL_*. Samples of 16 bits and floats are in the machine's byte order.
 pub type ofc_pixel_format = i32;
 
-/// Interleaved red, green, blue, 8 bits each.
+/// Interleaved red, green, blue of 8 bits each.
 pub const OFC_PIXEL_RGB8: i32 = 1;
-/// Interleaved blue, green, red, 8 bits each: OpenCV's CV_8UC3.
+/// Interleaved blue, green, red of 8 bits each: OpenCV's CV_8UC3.
 pub const OFC_PIXEL_BGR8: i32 = 2;
-/// Interleaved red, green, blue, ignored, 8 bits each.
+/// Interleaved red, green, blue and a sample that is ignored, of 8 bits each.
 pub const OFC_PIXEL_RGBA8: i32 = 3;
-/// Interleaved blue, green, red, ignored, 8 bits each: OpenCV's CV_8UC4.
+/// Interleaved blue, green, red and a sample that is ignored, of 8 bits each: CV_8UC4.
 pub const OFC_PIXEL_BGRA8: i32 = 4;
 /// Three planes of 8 bits, such as three grayscale photographs under three lights.
 pub const OFC_PIXEL_PLANES8: i32 = 5;
-/// As OFC_PIXEL_RGB8 with 16 bits a sample.
+/// Interleaved red, green, blue of 16 bits each.
 pub const OFC_PIXEL_RGB16: i32 = 11;
-/// As OFC_PIXEL_BGR8 with 16 bits a sample.
+/// Interleaved blue, green, red of 16 bits each: CV_16UC3.
 pub const OFC_PIXEL_BGR16: i32 = 12;
-/// As OFC_PIXEL_RGBA8 with 16 bits a sample.
+/// Interleaved red, green, blue and a sample that is ignored, of 16 bits each.
 pub const OFC_PIXEL_RGBA16: i32 = 13;
-/// As OFC_PIXEL_BGRA8 with 16 bits a sample.
+/// Interleaved blue, green, red and a sample that is ignored, of 16 bits each: CV_16UC4.
 pub const OFC_PIXEL_BGRA16: i32 = 14;
-/// As OFC_PIXEL_PLANES8 with 16 bits a sample.
+/// Three planes of 16 bits.
 pub const OFC_PIXEL_PLANES16: i32 = 15;
-/// As OFC_PIXEL_RGB8 with 32-bit floats.
+/// Interleaved red, green, blue, each a 32-bit float.
 pub const OFC_PIXEL_RGB32F: i32 = 21;
-/// As OFC_PIXEL_BGR8 with 32-bit floats.
+/// Interleaved blue, green, red, each a 32-bit float: CV_32FC3.
 pub const OFC_PIXEL_BGR32F: i32 = 22;
-/// As OFC_PIXEL_RGBA8 with 32-bit floats.
+/// Interleaved red, green, blue and a sample that is ignored, each a 32-bit float.
 pub const OFC_PIXEL_RGBA32F: i32 = 23;
-/// As OFC_PIXEL_BGRA8 with 32-bit floats.
+/// Interleaved blue, green, red and a sample that is ignored, each a 32-bit float.
 pub const OFC_PIXEL_BGRA32F: i32 = 24;
-/// As OFC_PIXEL_PLANES8 with 32-bit floats.
+/// Three planes of 32-bit floats.
 pub const OFC_PIXEL_PLANES32F: i32 = 25;
 
-/// A picture in the caller's memory, row 0 at the top. Initialize all of it: fields not set must be zero.
+/// A picture in the caller's memory. Initialize the whole struct: fields that are not set must be zero.
 ///
-/// Pixels may have any alignment and rows any stride of at least a row. A call reads the bytes from the first pixel to
-/// the last, and nobody may write them meanwhile.
+/// Row 0 is the top row. Pixels may have any alignment, and rows any stride that holds a row. Nobody may write the
+/// bytes from the first pixel to the last during a call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_image {
-    /// Interleaved pixels, or the red plane.
+    /// The first pixel of interleaved pixels, or of the red plane.
     pub pixels: *const c_void,
-    /// Pixels in a row, at least 1.
+    /// How many pixels are in a row, at least 1.
     pub width: i32,
-    /// Rows, at least 1.
+    /// How many rows there are, at least 1.
     pub height: i32,
-    /// Bytes from a row to the next, as cv::Mat::step.
+    /// How many bytes lie from one row to the next, as in cv::Mat::step.
     pub row_stride_bytes: usize,
     /// One of OFC_PIXEL_*.
     pub format: ofc_pixel_format,
     /// Must be zero.
     pub reserved: u32,
-    /// The green plane of an OFC_PIXEL_PLANES* format, with the red plane's stride; otherwise NULL.
+    /// The green plane of OFC_PIXEL_PLANES*, with the red plane's stride; else NULL.
     pub green_plane: *const c_void,
-    /// The blue plane of an OFC_PIXEL_PLANES* format, with the red plane's stride; otherwise NULL.
+    /// The blue plane of OFC_PIXEL_PLANES*, with the red plane's stride; else NULL.
     pub blue_plane: *const c_void,
-    /// NULL, or a byte a pixel: pixels where it is zero are left out.
+    /// A byte for each pixel, which is left out where the byte is zero; or NULL.
     pub mask: *const u8,
-    /// Bytes from a row of the mask to the next; without a mask it does not matter.
+    /// How many bytes lie from one row of the mask to the next; any number without a mask.
     pub mask_stride_bytes: usize,
 }
 
@@ -177,13 +171,13 @@ impl<'a> Call<'a> {
         Ok(view.with_mask(mask, image.mask_stride_bytes)?)
     }
 
-    /// The test at `inliers`, or every usable pixel of the picture where it is NULL.
-    pub(crate) fn inliers(
+    /// The test at an address, or every usable pixel of the picture where it is NULL.
+    pub(crate) fn inlier_test(
         &mut self,
-        inliers: *const ofc_inlier_test,
+        inlier_test: *const ofc_inlier_test,
         picture: &Image,
     ) -> Result<Inliers, Refusal> {
-        let given = unless_null(inliers, || self.params(inliers))?;
+        let given = unless_null(inlier_test, || self.params(inlier_test))?;
         Ok(given.unwrap_or_else(|| Inliers::all(Usable::below(picture.sample().saturation()))))
     }
 

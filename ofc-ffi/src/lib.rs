@@ -1,9 +1,12 @@
 //! The C ABI of ofc and nothing else: pointers are checked, structs are turned into the core's types, results are
 //! written back. `include/ofc.h` is generated from this crate; its doc comments are the manual.
 #![no_std]
-#![allow(non_camel_case_types)] // The names are C's.
-#![allow(clippy::missing_safety_doc)] // The documentation is for C callers: every call says what it needs.
-#![allow(clippy::doc_markdown)] // Comments are written for C: names are not Rust links.
+#![expect(non_camel_case_types, reason = "the names are those of C")]
+#![expect(
+    clippy::missing_safety_doc,
+    reason = "the documentation is for C callers: every call says what it needs"
+)]
+#![expect(clippy::doc_markdown, reason = "the documentation is the header's, where names are not links")]
 
 mod check;
 mod depth;
@@ -14,6 +17,7 @@ mod light;
 mod orientation;
 mod orthogonal;
 mod pointers;
+mod prelude;
 mod regression;
 mod render;
 mod segment;

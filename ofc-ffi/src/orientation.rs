@@ -1,25 +1,17 @@
 //! From tilts and slants to F and the normals.
 
-use crate::image::{ofc_image, size};
-use crate::pointers::Contract;
-use crate::solve::ofc_solution;
-use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_CELLS, OFC_STATUS_NOT_SOLVED, OFC_STATUS_OK,
-    OFC_STATUS_RANK_DEFICIENT, Refusal, ensure, ofc_status,
-};
-use crate::twin::{FromC, ToC, constants};
-use crate::types::{ofc_inlier_test, ofc_integrability, ofc_orientation};
+use crate::prelude::*;
 use ofc_core::color::inliers::Inliers;
 use ofc_core::math::mat3::Mat3;
 use ofc_core::orientation::integrability;
 use ofc_core::orientation::matrix::{Orientation, compose};
 use ofc_core::surface::normals::{self, Length};
 
-/// What becomes of a normal's length: one of OFC_NORMALIZATION_*.
+/// How a normal is normalized: one of OFC_NORMALIZATION_*.
 pub type ofc_normalization = i32;
-/// Set to 1.
+/// To length 1.
 pub const OFC_NORMALIZATION_UNIT: i32 = 0;
-/// The length that the color gives: near 1 where the model holds.
+/// Not at all: the length follows from the color, and is near 1 where the model holds.
 pub const OFC_NORMALIZATION_NONE: i32 = 1;
 
 constants!(Length = { Unit: OFC_NORMALIZATION_UNIT, Kept: OFC_NORMALIZATION_NONE });
@@ -31,15 +23,14 @@ pub(crate) fn solved(solution: &ofc_solution) -> Result<Orientation, Refusal> {
     FromC::from_c(solution.orientation)
 }
 
-/// F from the lengths, tilts and slants of its rows, and its inverse through the singular values.
-///
-/// @param norms           Three lengths in pixel values.
-/// @param tilt_rad        Three tilts.
-/// @param slant_rad       Three slants.
-/// @param rank_threshold  Singular values below this share of the largest are zero, in [0, 1); 1e-3 is what solve uses.
-/// @param orientation     Output; where the rank is below 3, f_inverse is the pseudo-inverse.
-/// @return OFC_STATUS_OK; OFC_STATUS_RANK_DEFICIENT, `orientation` written; OFC_STATUS_INVALID_PARAMETER; the status of
-///         an invalid argument.
+/// Composes F from the lengths, tilts and slants of its rows, and inverts it through its singular values.
+/// @param norms  Three lengths in pixel values.
+/// @param tilt_rad  Three tilts in radians.
+/// @param slant_rad  Three slants in radians.
+/// @param rank_threshold  Singular values below this ratio to the largest are zero, in [0, 1); ofc_solve() uses 1e-3.
+/// @param orientation  Output: F and its inverse. The inverse is the pseudo-inverse where the rank is below 3.
+/// @return OFC_STATUS_OK; OFC_STATUS_RANK_DEFICIENT when the rank is below 3, with `orientation` written; an argument
+///     status.
 ///
 /// Reference: section 3.4, steps 5 and 6, eq. 19.
 #[unsafe(no_mangle)]
@@ -64,27 +55,26 @@ pub unsafe extern "C" fn ofc_orientation_compose(
     })
 }
 
-/// The integral (15), mean of (dp/dy - dq/dx)^2 over cells of four inliers, for the normals that F^-1 makes: how far
-/// they are from being those of a surface. Slopes of normals with n3 below 0.05 are taken at 0.05.
-///
-/// @param image      The picture.
-/// @param inliers    The pixels to use; NULL for every usable pixel of the picture.
-/// @param f_inverse  F^-1, row-major.
-/// @param result     Output.
-/// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+/// Computes the integral (15), the mean of (dp/dy - dq/dx)^2 over cells of four inliers, for the normals F^-1 rho: how
+/// far they are from being the normals of a surface. Slopes of normals with n3 below 0.05 are taken at 0.05.
+/// @param image  The picture.
+/// @param inlier_test  Which pixels to use; NULL for every usable pixel.
+/// @param f_inverse  F^-1.
+/// @param result  Output: the integral.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; an argument status.
 ///
 /// Reference: section 2.3, eq. 15.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_integrability_integral(
     image: *const ofc_image,
-    inliers: *const ofc_inlier_test,
+    inlier_test: *const ofc_inlier_test,
     f_inverse: *const f64,
     result: *mut ofc_integrability,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
     unsafe { Contract::kept() }.call(|call| {
         let picture = call.image(image)?;
-        let test = call.inliers(inliers, &picture)?;
+        let test = call.inlier_test(inlier_test, &picture)?;
         let matrix = call.input_array::<f64, 9>(f_inverse)?;
         let result = call.output(result)?;
         let integral = integrability::integral(&picture, test.selector(), &Mat3::from_c(matrix)?);
@@ -93,48 +83,43 @@ pub unsafe extern "C" fn ofc_integrability_integral(
     })
 }
 
-/// Normals n = F^-1 rho of the pixels that a test accepts, with any F.
-///
-/// @param image      The picture.
-/// @param inliers    The pixels to use; NULL for every usable pixel of the picture.
-/// @param f_inverse  F^-1, row-major.
-/// @param length     OFC_NORMALIZATION_UNIT or OFC_NORMALIZATION_NONE.
-/// @param normals    Output: height rows of width times (x, y, z) floats, row 0 at the top, zero where there is no
-///                   normal. Frame: x right, y up, z toward the camera.
-/// @param normals_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
-/// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+/// Computes normals n = F^-1 rho with any F.
+/// @param image  The picture.
+/// @param inlier_test  Which pixels have a normal; NULL for every usable pixel.
+/// @param f_inverse  F^-1.
+/// @param normalization  One of OFC_NORMALIZATION_*.
+/// @param normals  Output: height rows of width (x right, y up, z toward the camera) floats; zero for no normal.
+/// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @return OFC_STATUS_OK; an argument status.
 ///
 /// Reference: eq. 8.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_normals_from_matrix(
     image: *const ofc_image,
-    inliers: *const ofc_inlier_test,
+    inlier_test: *const ofc_inlier_test,
     f_inverse: *const f64,
-    length: ofc_normalization,
+    normalization: ofc_normalization,
     normals: *mut f32,
     normals_stride_bytes: usize,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
     unsafe { Contract::kept() }.call(|call| {
         let picture = call.image(image)?;
-        let test = call.inliers(inliers, &picture)?;
+        let test = call.inlier_test(inlier_test, &picture)?;
         let matrix = Mat3::from_c(call.input_array(f_inverse)?)?;
-        let length = Length::from_c(length)?;
+        let length = Length::from_c(normalization)?;
         let (normals, stride) = call.output_rows(normals, size(&picture), 3, normals_stride_bytes)?;
         normals::compute(&picture, test.selector(), &matrix, length, normals, stride)?;
         Ok(OFC_STATUS_OK)
     })
 }
 
-/// Unit normals of the inliers of a solved picture. The test for inliers is in the solution, so the picture may also be
-/// another frame under the same lights.
-///
-/// @param image     The picture.
+/// Computes the unit normals of the inliers of a solved picture, or of another frame under the same lights.
+/// @param image  The picture.
 /// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
-/// @param normals   Output: height rows of width times (x, y, z) floats, row 0 at the top, zero where there is no
-///                  normal. Frame: x right, y up, z toward the camera.
-/// @param normals_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; the status of an invalid argument.
+/// @param normals  Output: height rows of width (x right, y up, z toward the camera) floats; zero for no normal.
+/// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; an argument status.
 ///
 /// Reference: eq. 8.
 #[unsafe(no_mangle)]

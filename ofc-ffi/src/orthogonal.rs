@@ -1,78 +1,72 @@
 //! The orthogonal transformation by other methods than tilts, and slants from tilts and integrability.
 
-use crate::image::{ofc_image, pixel_count};
-use crate::pointers::{Call, Contract, bytes, plain, unless_null};
-use crate::status::{OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, Refusal, ensure, ofc_status};
-use crate::twin::{FromC, ToC, constants, from_c, to_c};
-use crate::types::{ofc_inlier_test, ofc_integrability, ofc_slants};
-use core::ffi::c_void;
-use ofc_core::math::arena::Need;
+use crate::prelude::*;
 use ofc_core::math::mat3::Mat3;
 use ofc_core::orientation::orthogonal::annealing::{self, Params};
 use ofc_core::orientation::orthogonal::{Found, Transformation, TwinChoice, closed_form, tilts_given};
 
-/// What chose between the convex/concave twins: one of OFC_TWIN_*.
+/// What chose between a surface and its convex/concave twin: one of OFC_TWIN_*.
 pub type ofc_twin_choice = i32;
-/// No tilts were given: the convex one.
+/// No tilts were given, and the convex one was chosen.
 pub const OFC_TWIN_CONVEX: i32 = 0;
-/// The tilts of the rows of F that are nearer to those given.
+/// The tilts of the chosen one are nearer to the tilts that were given.
 pub const OFC_TWIN_TILTS: i32 = 1;
 
 /// How ofc_orthogonal_annealing() searches. Set by ofc_annealing_params_default().
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_annealing_params {
-    /// Temperature at the start and at the end of a chain, relative, > 0. Default 1 and 0.01.
+    /// Relative temperature at the start and at the end of a chain, > 0. Default 1 and 0.01.
     pub temperatures: [f64; 2],
-    /// Largest angle of a proposal at the start and at the end of a chain, radians, > 0. Default 2 and 0.02.
+    /// Largest angle of a proposal at the start and at the end of a chain, in radians, > 0. Default 2 and 0.02.
     pub angles_rad: [f64; 2],
-    /// Fixes every random choice. Default 0.
+    /// Determines every random choice. Default 0.
     pub seed: u64,
-    /// Proposals in all, 1 to 10,000,000. Default 4000.
+    /// How many proposals all chains make together, 1 to 10,000,000. Default 4000.
     pub proposals: u32,
-    /// Chains that share them, at least 1. Default 8.
+    /// How many chains there are, at least 1. Default 8.
     pub chains: u32,
-    /// Cells that proposals are evaluated on, at least 1. Default 2000.
+    /// How many cells proposals are evaluated on, at least 1. Default 2000.
     pub sample_cells: u32,
-    /// Times that the polish may compute (15) over the whole picture, up to 10,000,000. Default 60.
+    /// How often the local refinement may compute (15) over the whole picture, up to 10,000,000. Default 60.
     pub polish_evaluations: u32,
     /// Must be zero.
     pub reserved: [u32; 4],
 }
 
-/// One member of O(3) and the F that follows from it. Matrices are row-major.
+/// One orthogonal transformation of O(3) and the F that follows from it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_transformation {
-    /// r1, r2, r3: n = rows G0 rho; the determinant is 1 or -1.
+    /// The rows r1, r2, r3 of the transformation, n = rows G0 rho; the determinant is 1 or -1.
     pub rows: [f64; 9],
     /// F = G0^-1 rows^T, in pixel values.
     pub f: [f64; 9],
     /// F^-1 = rows G0.
     pub f_inverse: [f64; 9],
-    /// Tilts of the rows of F in (-pi, pi].
+    /// Tilts of the rows of F in radians, in (-pi, pi].
     pub tilt_rad: [f64; 3],
-    /// Slants of the rows of F; one above pi/2 is no light of the paper's.
+    /// Slants of the rows of F in radians; the paper has no light with a slant above pi/2.
     pub slant_rad: [f64; 3],
 }
 
-/// A minimum of the integral (15), and its convex/concave twin, whose integral is the same (section 2.4).
+/// A minimum of the integral (15), and the convex/concave twin, which has the same integral (section 2.4).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_orthogonal {
-    /// The one of the two that was chosen.
+    /// The transformation that was chosen.
     pub chosen: ofc_transformation,
-    /// The other: rows r1 and r2 with the other sign.
+    /// The other transformation: its rows r1 and r2 have the other sign.
     pub twin: ofc_transformation,
-    /// How clear the choice is, from 0 (equally good) to 1.
+    /// How clear the choice is, from 0 (both are equally good) to 1.
     pub margin: f64,
     /// The integral of both.
     pub integral: ofc_integrability,
-    /// The same before the polish on the whole picture.
+    /// The integral of both before the local refinement over the whole picture.
     pub unpolished: ofc_integrability,
     /// What chose, one of OFC_TWIN_*.
     pub choice: ofc_twin_choice,
-    /// Times the integral was computed over the whole picture.
+    /// How often the integral was computed over the whole picture.
     pub evaluations: u32,
 }
 
@@ -99,9 +93,8 @@ fn optional_tilts(call: &mut Call, tilt_rad: *const f64) -> Result<Option<[f64; 
 }
 
 /// Sets every field to its default.
-///
-/// @param params  Output.
-/// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+/// @param params  Output: the parameters.
+/// @return OFC_STATUS_OK; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_annealing_params_default(params: *mut ofc_annealing_params) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -111,9 +104,10 @@ pub unsafe extern "C" fn ofc_annealing_params_default(params: *mut ofc_annealing
     })
 }
 
-/// Bytes of workspace that ofc_orthogonal_annealing() needs: 36 for each cell that proposals are evaluated on.
-///
-/// @return The size, or 0 when an argument is invalid.
+/// Says how many bytes of workspace ofc_orthogonal_annealing() needs: 36 for each cell that proposals are evaluated on.
+/// @param width,height  Size of the picture.
+/// @param params  The parameters that ofc_orthogonal_annealing() will be given.
+/// @return The size; 0 when an argument is invalid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_orthogonal_annealing_workspace_size(
     width: i32,
@@ -127,26 +121,24 @@ pub unsafe extern "C" fn ofc_orthogonal_annealing_workspace_size(
     })
 }
 
-/// The orthogonal transformation that minimizes the integral (15) over O(3), by seeded simulated annealing on a sample of
-/// cells and a polish on the whole picture.
-///
-/// @param image      The picture.
-/// @param inliers    The pixels to use; NULL for every usable pixel of the picture.
-/// @param root       G0 of ofc_ellipsoid, row-major.
-/// @param tilt_rad   Three tilts that choose between the convex and the concave twin; NULL for the convex one.
-/// @param params     See the struct.
-/// @param workspace  ofc_orthogonal_annealing_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do
-///                   not matter.
-/// @param workspace_bytes  Its size.
-/// @param found      Output.
-/// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; OFC_STATUS_INVALID_PARAMETER, also for a root without an inverse; the
-///         status of an invalid argument.
+/// Finds the orthogonal transformation that minimizes the integral (15) over O(3), by simulated annealing on a sample
+/// of cells and a local refinement over the whole picture.
+/// @param image  The picture.
+/// @param inlier_test  Which pixels to use; NULL for every usable pixel.
+/// @param root  G0 of ofc_ellipsoid.
+/// @param tilt_rad  Three tilts in radians that choose between the convex/concave twins; NULL for the convex one.
+/// @param params  The parameters.
+/// @param workspace  ofc_orthogonal_annealing_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param found  Output: the minimum.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; an argument status, OFC_STATUS_INVALID_PARAMETER also for a root without
+///     an inverse.
 ///
 /// Reference: section 2.3, eqs. 13-15; L. L. Kontsevich, A. P. Petrov, I. S. Vergelskaya, JOSA A 11, 1994.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_orthogonal_annealing(
     image: *const ofc_image,
-    inliers: *const ofc_inlier_test,
+    inlier_test: *const ofc_inlier_test,
     root: *const f64,
     tilt_rad: *const f64,
     params: *const ofc_annealing_params,
@@ -157,7 +149,7 @@ pub unsafe extern "C" fn ofc_orthogonal_annealing(
     // SAFETY: the contract of this function.
     unsafe { Contract::kept() }.call(|call| {
         let picture = call.image(image)?;
-        let test = call.inliers(inliers, &picture)?;
+        let test = call.inlier_test(inlier_test, &picture)?;
         let root = Mat3::from_c(call.input_array(root)?)?;
         let tilts = optional_tilts(call, tilt_rad)?;
         let params: Params = call.params(params)?;
@@ -170,24 +162,24 @@ pub unsafe extern "C" fn ofc_orthogonal_annealing(
     })
 }
 
-/// The orthogonal transformation in closed form: the smoothness condition (16) gives r3 as an eigenvector, and the one
-/// angle that is left follows from (15); then a polish on (15).
-///
-/// @param image      The picture.
-/// @param inliers    The pixels to use; NULL for every usable pixel of the picture.
-/// @param root       G0 of ofc_ellipsoid, row-major.
-/// @param tilt_rad   Three tilts that choose between the convex and the concave twin; NULL for the convex one.
-/// @param polish_evaluations  Times that the polish may compute (15) over the picture, up to 10,000,000: 0 for the bare
-///                   closed form, 60 for what solve and annealing do.
-/// @param found      Output.
-/// @return As ofc_orthogonal_annealing().
+/// Finds the orthogonal transformation in closed form: the smoothness condition (16) gives r3 as an eigenvector, and
+/// the angle that is left follows from (15). A local refinement of (15) comes after it.
+/// @param image  The picture.
+/// @param inlier_test  Which pixels to use; NULL for every usable pixel.
+/// @param root  G0 of ofc_ellipsoid.
+/// @param tilt_rad  Three tilts in radians that choose between the convex/concave twins; NULL for the convex one.
+/// @param polish_evaluations  How often the local refinement may compute (15) over the picture, up to 10,000,000: 0 for
+///     the closed form alone; ofc_orthogonal_annealing() uses 60 by default.
+/// @param found  Output: the minimum.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; an argument status, OFC_STATUS_INVALID_PARAMETER also for a root without
+///     an inverse.
 ///
 /// Reference: section 2.3, eq. 16; M. S. Drew, L. L. Kontsevich, "Closed-form attitude determination under spectrally
 /// varying illumination", CVPR 1994.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_orthogonal_closed_form(
     image: *const ofc_image,
-    inliers: *const ofc_inlier_test,
+    inlier_test: *const ofc_inlier_test,
     root: *const f64,
     tilt_rad: *const f64,
     polish_evaluations: u32,
@@ -196,7 +188,7 @@ pub unsafe extern "C" fn ofc_orthogonal_closed_form(
     // SAFETY: the contract of this function.
     unsafe { Contract::kept() }.call(|call| {
         let picture = call.image(image)?;
-        let test = call.inliers(inliers, &picture)?;
+        let test = call.inlier_test(inlier_test, &picture)?;
         let root = Mat3::from_c(call.input_array(root)?)?;
         let tilts = optional_tilts(call, tilt_rad)?;
         let result = call.output(found)?;
@@ -207,9 +199,11 @@ pub unsafe extern "C" fn ofc_orthogonal_closed_form(
     })
 }
 
-/// Bytes of workspace that ofc_constrained_slants_integrable() needs: 36 for each cell.
-///
-/// @return The size, or 0 when an argument is invalid.
+/// Says how many bytes of workspace ofc_constrained_slants_integrable() needs: 36 for each cell that slants are
+/// evaluated on.
+/// @param width,height  Size of the picture.
+/// @param sample_cells  The number of cells that ofc_constrained_slants_integrable() will be given.
+/// @return The size; 0 when an argument is invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_constrained_slants_integrable_workspace_size(
     width: i32,
@@ -219,28 +213,26 @@ pub extern "C" fn ofc_constrained_slants_integrable_workspace_size(
     bytes(Need::of_singles(tilts_given::workspace_len(pixel_count(width, height), sample_cells)))
 }
 
-/// The slants that make the integral (15) smallest, given the tilts and norms of the rows of F, among those that eqs. 24
-/// do not rule out: section 3.3's other answer where eqs. 25 have no root.
-///
-/// @param image         The picture.
-/// @param inliers       The pixels to use; NULL for every usable pixel of the picture.
-/// @param norms         Lengths of the rows of F, > 0.
-/// @param tilt_rad      Their tilts.
-/// @param cosines       (h12, h13, h23), each in [-1, 1].
-/// @param slack         How far the root mean square residual of eqs. 24 may be above the smallest, >= 0; 0.05 is what
-///                      solve uses.
-/// @param sample_cells  Cells that slants are evaluated on, at least 1; 2000 is what solve uses.
-/// @param workspace     ofc_constrained_slants_integrable_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT;
-///                      contents do not matter.
-/// @param workspace_bytes  Its size.
-/// @param slants        Output: `residual` is the root mean square residual of eqs. 24, the branch is 0.
-/// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+/// Finds the slants that minimize the integral (15) among those that eqs. 24 allow, given the tilts and norms of the
+/// rows of F. Section 3.3 proposes it where eqs. 25 have no root.
+/// @param image  The picture.
+/// @param inlier_test  Which pixels to use; NULL for every usable pixel.
+/// @param norms  Three lengths of the rows of F, > 0.
+/// @param tilt_rad  Three tilts of the rows of F in radians.
+/// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
+/// @param slack  How far the root mean square residual of eqs. 24 may exceed the smallest one, >= 0; ofc_solve() uses
+///     0.05.
+/// @param sample_cells  How many cells slants are evaluated on, at least 1; ofc_solve() uses 2000.
+/// @param workspace  ofc_constrained_slants_integrable_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param slants  Output: the slants. `residual` is the root mean square residual of eqs. 24, `branch` is 0.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; an argument status.
 ///
 /// Reference: section 3.3.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_constrained_slants_integrable(
     image: *const ofc_image,
-    inliers: *const ofc_inlier_test,
+    inlier_test: *const ofc_inlier_test,
     norms: *const f64,
     tilt_rad: *const f64,
     cosines: *const f64,
@@ -253,7 +245,7 @@ pub unsafe extern "C" fn ofc_constrained_slants_integrable(
     // SAFETY: the contract of this function.
     unsafe { Contract::kept() }.call(|call| {
         let picture = call.image(image)?;
-        let test = call.inliers(inliers, &picture)?;
+        let test = call.inlier_test(inlier_test, &picture)?;
         let norms = call.input_array(norms)?;
         let (tilts, cosines) = call.tilts_and_cosines(tilt_rad, cosines)?;
         ensure(sample_cells > 0, OFC_STATUS_INVALID_PARAMETER)?;

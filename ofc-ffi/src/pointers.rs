@@ -15,7 +15,7 @@ use core::mem::MaybeUninit;
 use core::slice;
 use ofc_core::math::arena::{Arena, Need};
 
-/// The alignment in bytes that every workspace must have; what malloc returns has it.
+/// The alignment in bytes that every workspace must have; memory from malloc() has it.
 pub const OFC_WORKSPACE_ALIGNMENT: usize = 8;
 
 /// A plain C type: every bit pattern is a value.

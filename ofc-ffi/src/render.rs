@@ -1,49 +1,42 @@
 //! The forward model.
 
-use crate::image::{dimension, interleaved_layout, ofc_pixel_format};
-use crate::pointers::{Call, Contract, plain, unless_null};
-use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_MISALIGNED, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO,
-    Refusal, ensure, ofc_status,
-};
-use crate::twin::{ToC, from_c, to_c};
-use core::ffi::c_void;
+use crate::prelude::*;
 use ofc_core::math::mat3::scale;
 use ofc_core::picture::span;
 use ofc_core::render::{self, Canvas, DepthMap, Lights, Outputs, Params, Rows};
 
-/// Lights at most.
+/// The largest number of lights.
 pub const OFC_MAX_LIGHTS: usize = 32;
 const _: () = assert!(OFC_MAX_LIGHTS == render::MAX_LIGHTS, "the header says what the core does");
 
-/// A depth map in the caller's memory, row 0 at the top, depth growing toward the camera. Initialize all of it: fields
-/// not set must be zero.
+/// A depth map in the caller's memory; depth grows toward the camera. Initialize the whole struct: fields that are not
+/// set must be zero. Row 0 is the top row.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_depth_map {
-    /// A depth a pixel, in the unit of pixel_pitch; finite inside the mask.
+    /// A float for each pixel, its depth in the unit of `pixel_pitch`; finite inside the mask.
     pub depth: *const f32,
-    /// Pixels in a row, at least 1.
+    /// How many pixels are in a row, at least 1.
     pub width: i32,
-    /// Rows, at least 1.
+    /// How many rows there are, at least 1.
     pub height: i32,
-    /// Bytes from a row to the next, a multiple of 4.
+    /// How many bytes lie from one row to the next, a multiple of 4.
     pub row_stride_bytes: usize,
-    /// Distance between neighboring pixels, in [1e-30, 1e30].
+    /// The distance between neighboring pixels, in [1e-30, 1e30].
     pub pixel_pitch: f64,
-    /// NULL, or a byte a pixel: there is no surface where it is zero.
+    /// A byte for each pixel, which has no surface where the byte is zero; or NULL.
     pub mask: *const u8,
-    /// Bytes from a row of the mask to the next; without a mask it does not matter.
+    /// How many bytes lie from one row of the mask to the next; any number without a mask.
     pub mask_stride_bytes: usize,
 }
 
-/// L distant lights.
+/// Distant lights, L of them.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_lights {
-    /// A, L x 3 row-major: unit vectors toward the lights.
+    /// A, L x 3 and row-major: unit vectors toward the lights.
     pub directions: *const f64,
-    /// B, 3 x L row-major: row c holds what each light gives to channel c of a surface that faces it, in [0, 1e30].
+    /// B, 3 x L and row-major: row c holds what each light gives to channel c of a surface that faces it, in [0, 1e30].
     pub colors: *const f64,
     /// L, 1 to OFC_MAX_LIGHTS.
     pub count: i32,
@@ -55,27 +48,28 @@ pub struct ofc_lights {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_render_params {
-    /// Colors are scaled by one factor so that the largest modulus is this, in [0, 1e30]; 0 for no scaling. Default 255.
+    /// All colors are scaled by one factor, so that the largest modulus is this, in [0, 1e30]; 0 for no scaling.
+    /// Default 255.
     pub peak: f64,
-    /// Standard deviation of Gaussian noise in pixel values, added after scaling, in [0, 1e30]. Default 0.
+    /// Standard deviation of Gaussian noise that is added after scaling, in pixel values, in [0, 1e30]. Default 0.
     pub noise: f64,
-    /// Fixes the noise. Default 0.
+    /// Determines the noise. Default 0.
     pub seed: u64,
-    /// 1: the surface casts shadows on itself; 0: only what faces away from a light is dark. Default 1.
+    /// 1 when the surface casts shadows on itself, 0 when only what faces away from a light is dark. Default 1.
     pub cast_shadows: i32,
     /// Must be zero.
     pub reserved: [u32; 5],
 }
 
-/// What was rendered.
+/// What ofc_render() made.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_rendering {
-    /// Largest modulus of a color before scaling; 0 when all is dark.
+    /// The largest modulus of a color before scaling; 0 when all is dark.
     pub largest_modulus: f64,
-    /// The factor applied.
+    /// The factor that colors were scaled by.
     pub scale: f64,
-    /// The picture's true F where all lights are seen: scale times B A, row-major.
+    /// The true F of pixels that all lights reach: scale times B A.
     pub f: [f64; 9],
 }
 
@@ -85,9 +79,8 @@ to_c!(Params => ofc_render_params { peak, noise, seed, cast_shadows } zero { res
 from_c!(Params <= ofc_render_params { peak, noise, seed, cast_shadows } zero { reserved });
 
 /// Sets every field to its default.
-///
-/// @param params  Output.
-/// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+/// @param params  Output: the parameters.
+/// @return OFC_STATUS_OK; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_render_params_default(params: *mut ofc_render_params) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -97,25 +90,24 @@ pub unsafe extern "C" fn ofc_render_params_default(params: *mut ofc_render_param
     })
 }
 
-/// Renders a depth map under colored lights: eq. 5 with attached and cast shadows, scaling, noise and quantization.
+/// Renders a depth map under colored lights by eq. 5, with attached and cast shadows, scaling, noise and quantization.
 ///
-/// A pixel sees light i if a_i . n > 0 and, with cast shadows, no part of the surface is in the way. Normals are central
-/// differences of the depth, one-sided at the borders of the picture and the mask.
-///
-/// @param depth   The surface.
+/// Light i reaches a pixel if a_i . n > 0 and, with cast shadows, no part of the surface is in the way. Normals are
+/// central differences of the depth, one-sided at the borders of the picture and the mask.
+/// @param depth  The surface.
 /// @param lights  The lights.
-/// @param params  See the struct.
-/// @param pixels  Output: the picture, depth->width x depth->height, black outside the mask; integers are rounded and
-///                limited to their range.
-/// @param format  An OFC_PIXEL_* format that is not planar.
-/// @param pixels_stride_bytes  Bytes from a row to the next.
-/// @param seen    Output: a word a pixel, bit i set where the surface sees light i; may be NULL.
-/// @param seen_stride_bytes  Bytes from a row to the next, a multiple of 4.
-/// @param normals Output: (x, y, z) floats a pixel, zero outside the mask; may be NULL.
-/// @param normals_stride_bytes  Bytes from a row to the next, a multiple of 4.
+/// @param params  The parameters.
+/// @param pixels  Output: the picture, as large as the depth map and black outside of the mask; integers are rounded
+///     and limited to their range.
+/// @param format  One of OFC_PIXEL_* that is not planar.
+/// @param pixels_stride_bytes  How many bytes lie from one row of the picture to the next.
+/// @param visible_lights  Output: a word for each pixel, whose bit i is set where light i reaches the pixel; may be
+///     NULL.
+/// @param visible_lights_stride_bytes  How many bytes lie from one row of words to the next, a multiple of 4.
+/// @param normals  Output: (x, y, z) floats for each pixel, zero outside of the mask; may be NULL.
+/// @param normals_stride_bytes  How many bytes lie from one row of normals to the next, a multiple of 4.
 /// @param rendering  Output: scale and true F.
-/// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER for a depth, direction, color or parameter out of its range; the
-///         status of an invalid argument.
+/// @return OFC_STATUS_OK; an argument status.
 ///
 /// Reference: sections 1.1 and 4, eqs. 1-7.
 #[unsafe(no_mangle)]
@@ -126,8 +118,8 @@ pub unsafe extern "C" fn ofc_render(
     pixels: *mut c_void,
     format: ofc_pixel_format,
     pixels_stride_bytes: usize,
-    seen: *mut u32,
-    seen_stride_bytes: usize,
+    visible_lights: *mut u32,
+    visible_lights_stride_bytes: usize,
     normals: *mut f32,
     normals_stride_bytes: usize,
     rendering: *mut ofc_rendering,
@@ -143,7 +135,9 @@ pub unsafe extern "C" fn ofc_render(
         let pixels = call.output_bytes(pixels, bytes)?;
         let picture = Canvas::new(pixels, width, height, pixels_stride_bytes, sample, order)?;
         let size = [width, height];
-        let seen = unless_null(seen, || call.output_rows(seen, size, 1, seen_stride_bytes))?;
+        let seen = unless_null(visible_lights, || {
+            call.output_rows(visible_lights, size, 1, visible_lights_stride_bytes)
+        })?;
         let seen = seen.map(|(values, row_stride)| Rows { values, row_stride });
         let normals = unless_null(normals, || call.output_rows(normals, size, 3, normals_stride_bytes))?;
         let normals = normals.map(|(values, row_stride)| Rows { values, row_stride });

@@ -1,18 +1,11 @@
 //! Segmentation: pictures with more than one material or light environment.
 
-use crate::check::ofc_rank;
-use crate::image::{checked_pixel_count, dimension, ofc_image, pixel_count};
-use crate::pointers::{Contract, bytes, plain};
-use crate::status::{OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, Refusal, ofc_status};
-use crate::twin::{FromC, ToC, from_c, to_c};
-use crate::types::saturation;
-use core::ffi::c_void;
+use crate::prelude::*;
 use ofc_core::color::rank::{Class, patches};
 use ofc_core::color::segment::{self, MAX_REGIONS, Params, Region};
-use ofc_core::math::arena::Need;
 use ofc_core::picture::Usable;
 
-/// Regions at most.
+/// The largest number of regions.
 pub const OFC_MAX_REGIONS: usize = 16;
 const _: () = assert!(OFC_MAX_REGIONS == MAX_REGIONS, "the header says what the core does");
 
@@ -20,23 +13,24 @@ const _: () = assert!(OFC_MAX_REGIONS == MAX_REGIONS, "the header says what the 
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_segment_params {
-    /// Largest |rho^T C rho - 1| within a region, in (0, 1). Default 0.1: colors within 5 % of the ellipsoid.
+    /// The largest |rho^T C rho - 1| within a region, in (0, 1). Default 0.1: colors lie within 5 % of the ellipsoid.
     pub tolerance: f64,
-    /// A pixel is saturated if a channel is at or above this; 0 as in ofc_lmeds_params. Default 0.
+    /// A pixel with a channel at or above this level is saturated; zero stands for the largest value of the pixel type,
+    /// and for no limit with floats. Default 0.
     pub saturation: f64,
-    /// Fixes every random choice. Default 0.
+    /// Determines every random choice. Default 0.
     pub seed: u64,
-    /// Smaller regions are dropped, pixels, at least 12. Default 200.
+    /// Regions with fewer pixels are dropped; at least 12. Default 200.
     pub min_pixels: u32,
-    /// At most this many regions, 1 to OFC_MAX_REGIONS. Default 8.
+    /// At most so many regions are found, 1 to OFC_MAX_REGIONS. Default 8.
     pub max_regions: u32,
-    /// Blocks of six pixels that are tried for each region, 1 to 1,000,000. Default 300.
+    /// How many blocks of six pixels are tried for each region, 1 to 1,000,000. Default 300.
     pub seed_blocks: u32,
-    /// Distance between the pixels of a block, up to 64; 0 for 1, 2, 4, 8 and 16 in turn. Default 0.
+    /// The distance between the pixels of a block, up to 64; 0 for 1, 2, 4, 8 and 16 in turn. Default 0.
     pub spacing: u32,
     /// How far around a block its C is tried, 1 to 1000 pixels. Default 24.
     pub search_radius: u32,
-    /// Times that a region is fitted and grown again, up to 100. Default 12.
+    /// How often a region is fitted and grown again, up to 100 times. Default 12.
     pub refits: u32,
     /// Must be zero.
     pub reserved: [u32; 4],
@@ -46,19 +40,19 @@ pub struct ofc_segment_params {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_region {
-    /// C over its pixels: c11, c22, c33, c12, c13, c23 in (pixel value)^-2.
+    /// C over the region's pixels: c11, c22, c33, c12, c13, c23 in (pixel value)^-2.
     pub coefficients: [f64; 6],
-    /// Standard deviation of the residuals.
+    /// The standard deviation of the residuals.
     pub residual_deviation: f64,
-    /// Ranks of its colors and normals.
+    /// Ranks of the region's colors and normals.
     pub rank: ofc_rank,
-    /// How many pixels.
+    /// How many pixels the region has.
     pub pixel_count: i32,
-    /// Its value in the label map, from 1 on.
+    /// The region's value in the label map, from 1 on.
     pub label: i32,
-    /// Column and row of the top left pixel of the block that it began at.
+    /// Column and row of the top left pixel of the block from which the region was grown.
     pub seed_block: [i32; 2],
-    /// Distance between the pixels of that block.
+    /// The distance between the pixels of that block.
     pub spacing: i32,
     /// Zero.
     pub reserved: u32,
@@ -113,9 +107,8 @@ fn need(pixels: usize) -> Need {
 }
 
 /// Sets every field to its default.
-///
-/// @param params  Output.
-/// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+/// @param params  Output: the parameters.
+/// @return OFC_STATUS_OK; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_segment_params_default(params: *mut ofc_segment_params) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -125,26 +118,26 @@ pub unsafe extern "C" fn ofc_segment_params_default(params: *mut ofc_segment_par
     })
 }
 
-/// Bytes of workspace that ofc_segment() needs: 16 a pixel.
-///
-/// @return The size, or 0 when an argument is invalid.
+/// Says how many bytes of workspace ofc_segment() needs: 16 for each pixel.
+/// @param width,height  Size of the picture.
+/// @return The size; 0 when an argument is invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_segment_workspace_size(width: i32, height: i32) -> usize {
     bytes(need(pixel_count(width, height)))
 }
 
-/// Finds regions that share a C: each begins at six contiguous pixels and grows as far as the tolerance allows. Where a
-/// picture holds more than one material or light environment, this comes before ofc_solve(), which is pointed at one
-/// region by ofc_segment_mark() and the picture's mask.
+/// Finds regions that share a C: each starts from six contiguous pixels and grows as far as the tolerance allows.
 ///
-/// @param image      The picture.
-/// @param params     See the struct.
-/// @param workspace  ofc_segment_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter.
-/// @param workspace_bytes  Its size.
-/// @param labels     Output: width x height labels, rows without gaps: 0, or that of the pixel's region.
-/// @param regions    Output: OFC_MAX_REGIONS structs, of which the first `count` are written, in the order found.
-/// @param count      Output; no region is no error.
-/// @return OFC_STATUS_OK or the status of an invalid argument.
+/// Call it before ofc_solve() where a picture holds several materials or light environments. ofc_segment_mark() turns
+/// one region into a mask.
+/// @param image  The picture.
+/// @param params  The parameters.
+/// @param workspace  ofc_segment_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param labels  Output: width x height labels, rows without gaps: the label of the pixel's region, or 0.
+/// @param regions  Output: OFC_MAX_REGIONS structs, of which the first `count` are written, in the order found.
+/// @param count  Output: how many regions were found, perhaps none.
+/// @return OFC_STATUS_OK; an argument status.
 ///
 /// Stack: below 24 KiB. Reference: section 1.2; L. L. Kontsevich, A. P. Petrov, I. S. Vergelskaya, JOSA A 11, 1994.
 #[unsafe(no_mangle)]
@@ -178,14 +171,13 @@ pub unsafe extern "C" fn ofc_segment(
     })
 }
 
-/// Turns one label into a mask for ofc_image: 255 where a pixel has it, 0 elsewhere.
-///
+/// Turns one label into a mask for ofc_image: 255 where a pixel has the label, 0 elsewhere.
 /// @param labels  width x height labels, rows without gaps.
-/// @param width   Pixels in a row.
-/// @param height  Rows.
-/// @param label   1 to 65535.
-/// @param mask    Output: width x height bytes, rows without gaps.
-/// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER for a label out of range; the status of an invalid argument.
+/// @param width  How many pixels are in a row.
+/// @param height  How many rows there are.
+/// @param label  The label, 1 to 65535.
+/// @param mask  Output: width x height bytes, rows without gaps.
+/// @return OFC_STATUS_OK; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_segment_mark(
     labels: *const u16,
@@ -205,25 +197,26 @@ pub unsafe extern "C" fn ofc_segment_mark(
     })
 }
 
-/// Patches in a row (and, with height for width, in a column) of a picture: width over side, rounded up; 0 for a width
-/// or side that is not positive.
+/// Computes how many patches are in a row of a picture, or in a column: width over side, rounded up.
+/// @param width  Width of the picture, or its height.
+/// @param side  Side of a patch.
+/// @return The number; 0 for a width or side that is not positive.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_rank_patches_count(width: i32, side: i32) -> i32 {
     let [across, _] = patches::shape(dimension(width), 1, dimension(side));
     across.to_c()
 }
 
-/// Classifies a picture's patches by the rank of their light and the rank of their surface.
-///
+/// Classifies the patches of a picture by the rank of their light and the rank of their surface.
 /// @param image  The picture.
-/// @param side   Side of a patch, 3 to 64 pixels; patches at the right and lower edges may be smaller. The larger it is, the less
-///               a surface must bend for that to be seen.
+/// @param side  Side of a patch, 3 to 64 pixels; patches at the right and lower edges may be smaller. The larger it is, the
+///     less a surface must bend for that to be seen.
 /// @param noise  Standard deviation of a channel in pixel values, > 0; ofc_rank has it.
-/// @param light  Rank of the light that all patches share, 1 to 3, where it is known: it fills in what a patch does not say, and a
-///               patch that says another rank keeps it. ofc_rank says 3 where its `colors` are 3, 2 where `colors` are 2 and
-///               `normals` 3, and 1 where `colors` are 1 and `normals` 0. 0 where it is not known.
-/// @param classes  Output: ofc_rank_patches_count() a row and a column, rows without gaps.
-/// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+/// @param light  Rank of the light that all patches share, 1 to 3, where it is known: it fills in what a patch does not say, and
+///     a patch that says another rank keeps it. ofc_rank says 3 where its `colors` are 3, 2 where `colors` are 2 and `normals`
+///     3, and 1 where `colors` are 1 and `normals` 0. 0 where it is not known.
+/// @param classes  Output: ofc_rank_patches_count() in a row and in a column, rows without gaps.
+/// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER; an argument status.
 ///
 /// Reference: section 1.2; A. P. Petrov, L. L. Kontsevich, JOSA A 11, 1994.
 #[unsafe(no_mangle)]

@@ -1,17 +1,10 @@
 //! Slants from tilts and angles.
 
-use crate::image::dimension;
-use crate::pointers::{Call, Contract};
-use crate::status::{
-    OFC_STATUS_EMPTY, OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_CONSISTENT_SLANTS, OFC_STATUS_OK,
-    OFC_STATUS_TOO_LARGE, Refusal, ensure, ofc_status,
-};
-use crate::twin::{ToC, to_c};
-use crate::types::ofc_slants;
+use crate::prelude::*;
 use core::f64::consts::FRAC_PI_2;
 use ofc_core::light::constrained_slant::{self, CurvePoint, MAX_CANDIDATES, SlantRoot};
 
-/// No more slants than this are consistent with three tilts and three cosines.
+/// The largest number of slants that are consistent with three tilts and three cosines.
 pub const OFC_MAX_CANDIDATES: usize = 8;
 const _: () = assert!(OFC_MAX_CANDIDATES == MAX_CANDIDATES, "the header says what the core does");
 
@@ -32,16 +25,14 @@ impl Call<'_> {
     }
 }
 
-/// All slants in [0, pi/2] that are consistent with three tilts and the angles between the rows of F: every solution of
-/// eqs. 24, on all eight branches of eqs. 25.
-///
-/// @param tilt_rad    Three tilts.
-/// @param cosines     (h12, h13, h23), each in [-1, 1].
+/// Finds all slants in [0, pi/2] that are consistent with three tilts and the angles between the rows of F: every
+/// solution of eqs. 24, on all eight branches of eqs. 25.
+/// @param tilt_rad  Three tilts in radians.
+/// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
 /// @param candidates  Output: OFC_MAX_CANDIDATES structs, of which the first `count` are written, by ascending first
-///                    slant; their `integral` is 0.
-/// @param count       Output.
-/// @return OFC_STATUS_OK; OFC_STATUS_NO_CONSISTENT_SLANTS, with a count of 0; OFC_STATUS_INVALID_PARAMETER; the status
-///         of an invalid argument.
+///     slant; their `integral` is 0.
+/// @param count  Output: how many candidates there are.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_CONSISTENT_SLANTS, with a count of 0; an argument status.
 ///
 /// Reference: sections 3.2-3.3, eqs. 24-25.
 #[unsafe(no_mangle)]
@@ -65,15 +56,14 @@ pub unsafe extern "C" fn ofc_constrained_slants_find(
     })
 }
 
-/// The slants in [0, pi/2] that satisfy eqs. 24 best in least squares: what solve falls back on where they have no
-/// common solution.
+/// Finds the slants in [0, pi/2] that satisfy eqs. 24 best in least squares; ofc_solve() falls back on them where eqs.
+/// 24 have no solution.
+/// @param tilt_rad  Three tilts in radians.
+/// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
+/// @param slants  Output: the slants; `branch` and `integral` are 0.
+/// @return OFC_STATUS_OK; an argument status.
 ///
-/// @param tilt_rad  Three tilts.
-/// @param cosines   (h12, h13, h23), each in [-1, 1].
-/// @param slants    Output; branch and integral are 0.
-/// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
-///
-/// Reference: eq. 24.
+/// Reference: eqs. 24.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_constrained_slants_least_squares(
     tilt_rad: *const f64,
@@ -94,18 +84,16 @@ pub unsafe extern "C" fn ofc_constrained_slants_least_squares(
     })
 }
 
-/// Samples f(sigma1) on one branch of eqs. 25, the curve of Figures 2 and 4(a): where it meets sigma1 itself is a
-/// solution, if the other slants are in range.
-///
-/// @param tilt_rad    Three tilts.
-/// @param cosines     (h12, h13, h23), each in [-1, 1].
-/// @param branch      1 to 8: the signs of the square roots, 1 for (+,+,+) and 8 for (-,-,-).
-/// @param count       How many samples, at least 2, evenly over [0, pi/2] with both ends.
-/// @param slant_rad   Output: `count` times three: sigma1, and slants 2 and 3 that follow from it by eqs. 25, not confined to
-///                    [0, pi/2] and NaN where a square root has no real value.
-/// @param f_rad       Output: `count` values, NaN where a square root has no real value.
-/// @return OFC_STATUS_OK; OFC_STATUS_EMPTY for fewer than two samples; OFC_STATUS_INVALID_PARAMETER; the status of an
-///         invalid argument.
+/// Samples f(sigma1) on one branch of eqs. 25, the curve of Figures 2 and 4(a). Where f(sigma1) equals sigma1 is a
+/// solution, if the other slants are in their range.
+/// @param tilt_rad  Three tilts in radians.
+/// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
+/// @param branch  The branch, from 1 for the signs (+,+,+) of the square roots to 8 for (-,-,-).
+/// @param count  How many samples to take evenly over [0, pi/2] with both ends, at least 2.
+/// @param slant_rad  Output: `count` triples in radians: sigma1, and the slants 2 and 3 that follow from it by eqs. 25.
+///     These are not confined to [0, pi/2], and are NaN where a square root has no real value.
+/// @param f_rad  Output: `count` values in radians, NaN where a square root has no real value.
+/// @return OFC_STATUS_OK; an argument status, OFC_STATUS_EMPTY for fewer than two samples.
 ///
 /// Reference: section 3.3, eqs. 25.
 #[unsafe(no_mangle)]

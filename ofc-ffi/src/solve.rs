@@ -1,77 +1,61 @@
 //! The whole pipeline.
 
-use crate::check::ofc_rank;
-use crate::image::{checked_pixel_count, ofc_image};
-use crate::light::{
-    OFC_TILT_CHOJNACKI, OFC_TILT_GIVEN, OFC_TILT_LEE_ROSENFELD, OFC_TILT_PENTLAND, OFC_TILT_ZHENG_CHELLAPPA,
-    ofc_tilt_estimator,
-};
-use crate::pointers::{Contract, plain, unless_null};
-use crate::slants::OFC_MAX_CANDIDATES;
-use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_OK, OFC_STATUS_RESERVED_NOT_ZERO, Refusal, ensure, ofc_status,
-};
-use crate::twin::{FromC, ToC, constants, to_c};
-use crate::types::{
-    ofc_color_fit, ofc_ellipsoid, ofc_inlier_test, ofc_lmeds_params, ofc_location, ofc_orientation,
-    ofc_pixel_counts, ofc_slants, ofc_tilts,
-};
-use core::ffi::c_void;
+use crate::prelude::*;
 use ofc_core::light::tilt::TiltEstimator;
-use ofc_core::math::arena::Need;
 use ofc_core::orientation::joint::{Evidence, Joint};
 use ofc_core::solve::{
     self, Candidate, Choice, NormSource, OrientationMethod, Params, ShadowRejection, SlantFallback,
     SlantSource, Solution,
 };
 
-/// Where the slants come from: one of OFC_SLANTS_*.
+/// Where slants come from: one of OFC_SLANTS_*.
 pub type ofc_slant_source = i32;
-/// There are none.
+/// There are no slants.
 pub const OFC_SLANTS_NONE: i32 = 0;
-/// A root of eqs. 25, chosen by the integral (15).
+/// The slants are a root of eqs. 25, chosen by the integral (15).
 pub const OFC_SLANTS_ROOT: i32 = 1;
-/// There is no root: least squares over eqs. 24.
+/// Eqs. 25 have no root: the slants satisfy eqs. 24 best in least squares.
 pub const OFC_SLANTS_LEAST_SQUARES: i32 = 2;
-/// There is no root: the least integral (15) that eqs. 24 allow.
+/// Eqs. 25 have no root: the slants make the integral (15) smallest.
 pub const OFC_SLANTS_TILT_INTEGRABILITY: i32 = 3;
-/// There is no root: Pentland's slants, eq. 22.
+/// Eqs. 25 have no root: the slants are Pentland's, eq. 22.
 pub const OFC_SLANTS_PENTLAND: i32 = 4;
-/// There is no root: Lee and Rosenfeld's slants, eq. 23.
+/// Eqs. 25 have no root: the slants are Lee and Rosenfeld's, eq. 23.
 pub const OFC_SLANTS_LEE_ROSENFELD: i32 = 5;
-/// There is no root: Zheng and Chellappa's slants.
+/// Eqs. 25 have no root: the slants are Zheng and Chellappa's.
 pub const OFC_SLANTS_ZHENG_CHELLAPPA: i32 = 6;
 
-/// F was oriented as a whole (OFC_ORIENTATION_JOINT): its slants follow from it.
+/// The joint method found F as a whole, and the slants follow from F.
 pub const OFC_SLANTS_JOINT: i32 = 7;
 
-/// How the orthogonal transformation that the regression leaves open is found: one of OFC_ORIENTATION_*.
+/// How the orthogonal transformation that C leaves open is found: one of OFC_ORIENTATION_*.
 pub type ofc_orientation_method = i32;
-/// From integrability on windows of several sizes and from normals that point outward, each as far as it can be trusted
-/// in this picture.
+/// The joint method: integrability on windows of several sizes, and normals that point outward, each weighed by its
+/// uncertainty in this picture.
 pub const OFC_ORIENTATION_JOINT: i32 = 0;
-/// The paper's: slants from tilts (section 3). Good on closed convex shapes, poor on relief that touches the frame.
+/// The direct method of the paper: slants from tilts (section 3). It is good on closed convex shapes, and poor on
+/// relief that touches the frame.
 pub const OFC_ORIENTATION_DIRECT: i32 = 1;
 
-/// Whether colors that one of the lights does not reach are looked for and left out before the fit that counts: one of
+/// Whether colors that one of the lights does not reach are found and left out before the fit: one of
 /// OFC_SHADOW_REJECTION_*. The paper has no such step.
 pub type ofc_shadow_rejection = i32;
-/// On with OFC_ORIENTATION_JOINT, off with OFC_ORIENTATION_DIRECT and with given tilts: that method is the paper's.
+/// On with the joint method, off with the direct method and with given tilts.
 pub const OFC_SHADOW_REJECTION_AUTO: i32 = 0;
-/// On, whatever the method.
+/// On with every method.
 pub const OFC_SHADOW_REJECTION_ON: i32 = 1;
-/// Off, whatever the method.
+/// Off with every method.
 pub const OFC_SHADOW_REJECTION_OFF: i32 = 2;
 
 /// What decided the orientation: one of OFC_EVIDENCE_*.
 pub type ofc_evidence = i32;
-/// Tilts, with the direct method: nothing is known of how sure they are.
+/// Tilts, by the direct method; how sure they are is not known.
 pub const OFC_EVIDENCE_TILTS_ALONE: i32 = 0;
-/// Mostly that normals point outward, which is what tilts rest on.
+/// Mostly that normals point outward, which tilts rest on too.
 pub const OFC_EVIDENCE_OUTWARD: i32 = 1;
 /// Mostly integrability.
 pub const OFC_EVIDENCE_INTEGRABILITY: i32 = 2;
-/// Both.
+/// Integrability and outward normals.
 pub const OFC_EVIDENCE_BOTH: i32 = 3;
 
 /// What to do where eqs. 25 have no root: one of OFC_FALLBACK_*.
@@ -80,21 +64,21 @@ pub type ofc_slant_fallback = i32;
 pub const OFC_FALLBACK_REFUSE: i32 = 0;
 /// Take the slants that satisfy eqs. 24 best.
 pub const OFC_FALLBACK_LEAST_SQUARES: i32 = 1;
-/// Take those that make the integral (15) smallest among the ones that eqs. 24 do not rule out.
+/// Take the slants that minimize the integral (15) among those that eqs. 24 allow.
 pub const OFC_FALLBACK_TILT_INTEGRABILITY: i32 = 2;
-/// Take Pentland's, eq. 22.
+/// Take Pentland's slants, eq. 22.
 pub const OFC_FALLBACK_PENTLAND: i32 = 3;
-/// Take Lee and Rosenfeld's, eq. 23.
+/// Take Lee and Rosenfeld's slants, eq. 23.
 pub const OFC_FALLBACK_LEE_ROSENFELD: i32 = 4;
-/// Take Zheng and Chellappa's.
+/// Take Zheng and Chellappa's slants.
 pub const OFC_FALLBACK_ZHENG_CHELLAPPA: i32 = 5;
 
 /// Where the lengths of the rows of F, the strengths of the channels' lights, come from: one of OFC_NORMS_*.
 pub type ofc_norm_source = i32;
-/// From C, eq. 18.
+/// They come from C, eq. 18.
 pub const OFC_NORMS_FIT: i32 = 0;
-/// They are the largest value of each channel over the inliers, as of ofc_channel_maxima(). Slants do not change with it, the
-/// lengths of the normals do (section 4).
+/// They are the largest values of the channels over the inliers, as ofc_channel_maxima() finds them. The slants do not
+/// change with it; the lengths of the normals do (section 4).
 pub const OFC_NORMS_CHANNEL_MAXIMA: i32 = 1;
 
 /// What ofc_solve() does. Set by ofc_solve_params_default().
@@ -103,41 +87,42 @@ pub const OFC_NORMS_CHANNEL_MAXIMA: i32 = 1;
 pub struct ofc_solve_params {
     /// The regression in color space, with the seed and the saturation level.
     pub lmeds: ofc_lmeds_params,
-    /// Singular values of F below this share of the largest are zero, in [0, 1). Default 1e-3.
+    /// Singular values of F below this ratio to the largest are zero, in [0, 1). Default 1e-3.
     pub rank_threshold: f64,
-    /// The tilts of the rows of F, for OFC_TILT_GIVEN; otherwise they do not matter. Default 0.
+    /// The tilts of the rows of F in radians, for OFC_TILT_GIVEN; ignored with other estimators. Default 0.
     pub tilt_rad: [f64; 3],
-    /// Where the tilts come from, one of OFC_TILT_*. Default OFC_TILT_PENTLAND.
+    /// Where tilts come from, one of OFC_TILT_*. Default OFC_TILT_PENTLAND.
     pub tilt_estimator: ofc_tilt_estimator,
     /// What to do where eqs. 25 have no root, one of OFC_FALLBACK_*. Default OFC_FALLBACK_LEAST_SQUARES.
     pub slant_fallback: ofc_slant_fallback,
-    /// How F is oriented, one of OFC_ORIENTATION_*. Given tilts, and a picture that is too small for OFC_ORIENTATION_JOINT, take the paper's
-    /// method whatever this is; tilt_estimator and slant_fallback are for that method. Default OFC_ORIENTATION_JOINT.
+    /// How F is oriented, one of OFC_ORIENTATION_*. Given tilts, and pictures that are too small for the joint method,
+    /// take the direct method whatever this is. `tilt_estimator` and `slant_fallback` are for the direct method alone.
+    /// Default OFC_ORIENTATION_JOINT.
     pub orientation_method: ofc_orientation_method,
     /// Whether colors that one of the lights does not reach are left out, one of OFC_SHADOW_REJECTION_*. Default
     /// OFC_SHADOW_REJECTION_AUTO.
     pub shadow_rejection: ofc_shadow_rejection,
-    /// Where the lengths of the rows of F come from, with the direct method; one of OFC_NORMS_*. Streams take OFC_NORMS_FIT
-    /// alone. Default OFC_NORMS_FIT.
+    /// Where the lengths of the rows of F come from with the direct method, one of OFC_NORMS_*; streams take
+    /// OFC_NORMS_FIT alone. Default OFC_NORMS_FIT.
     pub norm_source: ofc_norm_source,
     /// Must be zero.
     pub reserved: [u32; 3],
 }
 
-/// How sure the orientation of F is; all zero with the direct method. Errors of C, which turn and bend normals as well, come on
-/// top of it.
+/// How sure the orientation of F is; all zero with the direct method. Errors of C, which turn and bend normals as well,
+/// are not part of it.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_confidence {
-    /// Covariance of the small rotation, a vector in the frame of the normals, by which all of them may be turned; radians
-    /// squared, row-major.
+    /// Covariance of the small rotation vector by which all normals may be turned, in the frame of the normals and in
+    /// radians^2.
     pub covariance: [f64; 9],
-    /// The root mean square angle by which a normal is expected to be turned, in radians.
+    /// The expected root mean square angle by which a normal is turned, in radians.
     pub error_rad: f64,
-    /// Convex or concave: from 0 (the surface is as much a dome as a hollow) to 1 (all of it is a dome).
+    /// How clearly the surface is convex, from 0 (as much convex as concave) to 1 (all of it is convex).
     pub convexity: f64,
-    /// How much less likely the next best orientation elsewhere is, as a difference of log likelihoods; infinite where there
-    /// is none.
+    /// The log likelihood of the orientation minus that of the best other one that is not near it; infinite where there
+    /// is no other.
     pub log_likelihood_margin: f64,
     /// What decided, one of OFC_EVIDENCE_*.
     pub evidence: ofc_evidence,
@@ -145,7 +130,7 @@ pub struct ofc_confidence {
     pub reserved: u32,
 }
 
-/// What ofc_solve() found. On a positive status the fields of the stages that were not reached are zero.
+/// What ofc_solve() found. On a positive status the fields of stages that were not reached are zero.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_solution {
@@ -155,34 +140,34 @@ pub struct ofc_solution {
     pub slant_source: ofc_slant_source,
     /// How many candidates there are.
     pub candidate_count: i32,
-    /// Which of them was chosen; -1 for none.
+    /// The index of the candidate that was chosen; -1 for none.
     pub chosen: i32,
-    /// Inliers after both rejections.
+    /// How many pixels pass `inlier_test`.
     pub inlier_count: i32,
-    /// Bit i, 1 << i, is set where slant_rad[i] is above 90 degrees: the light that channel i is equivalent to shines from
-    /// behind the surface, and reaches only parts of it that are turned toward it and away from the camera. Zero with
-    /// OFC_ORIENTATION_DIRECT, as in the paper. With OFC_ORIENTATION_JOINT such a light is rare in a picture and common in
-    /// a wrong answer.
+    /// Bit i, 1 << i, is set where `slant_rad[i]` is above pi/2: the light that channel i is equivalent to shines from
+    /// behind the surface, and reaches only parts that are turned toward it and away from the camera. Zero with the
+    /// direct method, as in the paper. With the joint method such a light is rare in a picture and common in a wrong
+    /// answer.
     pub lights_from_behind: u32,
     /// What became of the pixels before the fit.
     pub pixel_counts: ofc_pixel_counts,
-    /// The regression: C with its errors, dispersion, R^2, inliers after the first rejection.
+    /// The regression: C with its errors, its dispersion, and the first rejection.
     pub fit: ofc_color_fit,
-    /// Effective ranks of the colors and normals of the inliers: F can be recovered where both are 3.
+    /// Effective ranks of the inliers' colors and normals; F is determined where both are 3.
     pub rank: ofc_rank,
-    /// Location of the lengths of the normals: the second rejection.
+    /// The location of the normals' lengths, for the second rejection.
     pub norm_location: ofc_location,
     /// The test for inliers after both rejections.
     pub inlier_test: ofc_inlier_test,
     /// C, its root, and the norms and cosines of the rows of F.
     pub ellipsoid: ofc_ellipsoid,
-    /// Tilts of the rows of F.
+    /// The tilts of the rows of F.
     pub tilts: ofc_tilts,
-    /// Slants of the rows of F, from +z: in [0, pi/2] with the direct method, in [0, pi] with the joint one.
+    /// The slants of the rows of F in radians: in [0, pi/2] with the direct method, in [0, pi] with the joint method.
     pub slant_rad: [f64; 3],
     /// How sure the orientation is.
     pub confidence: ofc_confidence,
-    /// with the direct method, all slants consistent with the tilts, by ascending first slant.
+    /// With the direct method, all slants that are consistent with the tilts, by ascending first slant.
     pub candidates: [ofc_slants; OFC_MAX_CANDIDATES],
     /// F and its inverse.
     pub orientation: ofc_orientation,
@@ -335,9 +320,8 @@ impl ofc_solution {
 }
 
 /// Sets every field to its default.
-///
-/// @param params  Output.
-/// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+/// @param params  Output: the parameters.
+/// @return OFC_STATUS_OK; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_solve_params_default(params: *mut ofc_solve_params) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -347,10 +331,11 @@ pub unsafe extern "C" fn ofc_solve_params_default(params: *mut ofc_solve_params)
     })
 }
 
-/// Bytes of workspace that ofc_solve() needs: 8 a pixel, and 16 for each of the first sample_size pixels where that is
-/// more. OFC_SOLVE_WORKSPACE_SIZE(width, height) is the same number for the default parameters, for static buffers.
-///
-/// @return The size, or 0 when an argument is invalid.
+/// Says how many bytes of workspace ofc_solve() needs: 8 for each pixel, or where that is more, 16 for each of the
+/// first `sample_size` pixels. OFC_SOLVE_WORKSPACE_SIZE() is the same number for static buffers.
+/// @param width,height  Size of the picture.
+/// @param params  The parameters that ofc_solve() will be given.
+/// @return The size; 0 when an argument is invalid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_solve_workspace_size(
     width: i32,
@@ -365,20 +350,16 @@ pub unsafe extern "C" fn ofc_solve_workspace_size(
     })
 }
 
-/// From a picture to the color-orientation matrix F: regression, rejection, tilts, slants, the choice among candidates.
-///
-/// @param image      The picture; its mask, black and saturated pixels are left out.
-/// @param params     See the struct.
-/// @param workspace  ofc_solve_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter, and
-///                   nothing in it is needed after the call.
-/// @param workspace_bytes  Its size.
-/// @param inlier_mask  Output: width x height bytes, rows without gaps, 255 for an inlier and 0 elsewhere; may be NULL.
-///                   It must not be the picture's own mask.
-/// @param solution   Output.
-/// @return OFC_STATUS_OK. A positive status means that there is no F, and the solution holds what was found on the way:
-///         OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_NO_TILT,
-///         OFC_STATUS_NO_CONSISTENT_SLANTS. A negative status leaves the outputs untouched: OFC_STATUS_TOO_FEW_PIXELS,
-///         OFC_STATUS_DARK, OFC_STATUS_SATURATED, or that of an invalid argument.
+/// Finds the color-orientation matrix F of a picture: by regression, rejection of outliers, and orientation.
+/// @param image  The picture. Pixels that are masked out, black, saturated or not finite are left out.
+/// @param params  The parameters.
+/// @param workspace  ofc_solve_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param inlier_mask  Output: width x height bytes without gaps, 255 for an inlier, else 0; may be NULL.
+/// @param solution  Output: F in `orientation`, and what every stage found.
+/// @return OFC_STATUS_OK; an argument status. OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE,
+///     OFC_STATUS_NO_TILT or OFC_STATUS_NO_CONSISTENT_SLANTS when there is no F; the solution then holds what was found
+///     on the way. OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or OFC_STATUS_SATURATED when there is nothing to fit.
 ///
 /// Stack: below 24 KiB. Reference: section 3.4.
 #[unsafe(no_mangle)]

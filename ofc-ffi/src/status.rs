@@ -1,6 +1,6 @@
 //! What every call returns.
 
-use crate::twin::constants;
+use crate::prelude::*;
 use core::ffi::{CStr, c_char};
 use ofc_core::check::CheckError;
 use ofc_core::color::ellipsoid::NotPositiveDefinite;
@@ -15,75 +15,75 @@ use ofc_core::stream::StreamError;
 use ofc_core::surface::depth::DepthError;
 use ofc_core::surface::normals;
 
-/// The result of a call: 0 is success; negative is an error that leaves every output as it was; positive is a sound
-/// question without a full answer, and each call says what it writes then. Numbers are never reused.
+/// What a call returns: one of OFC_STATUS_*, whose numbers are never reused.
+///
+/// Zero is success. A negative status is an error, and no output has been touched. A positive status says that the
+/// input is sound but does not determine the whole answer; the function says what it writes then. An argument status is
+/// one from OFC_STATUS_NULL_POINTER to OFC_STATUS_RESERVED_NOT_ZERO.
 pub type ofc_status = i32;
 
 /// Success.
 pub const OFC_STATUS_OK: i32 = 0;
-/// The colors, or the normals, span fewer than three dimensions: the picture does not determine C. The solution
-/// holds what the regression found.
+/// Colors or normals span fewer than three dimensions: F is not determined.
 pub const OFC_STATUS_RANK_DEFICIENT: i32 = 1;
-/// C is not positive definite: the colors do not lie on an ellipsoid. The normals span fewer than three dimensions,
-/// or the surface is not uniform, or not matte, or lit differently from place to place.
+/// The colors do not lie on an ellipsoid: C is not positive definite.
 pub const OFC_STATUS_NOT_POSITIVE_DEFINITE: i32 = 2;
-/// The mean gradient of a channel is zero, or no two inliers are neighbors: there is no tilt.
+/// There is no tilt: a channel has no mean gradient over the inliers.
 pub const OFC_STATUS_NO_TILT: i32 = 3;
-/// No slants agree with the tilts and the angles between the rows of F.
+/// No slants agree with the tilts and with the angles between the rows of F.
 pub const OFC_STATUS_NO_CONSISTENT_SLANTS: i32 = 4;
-/// An iteration ended before it reached its tolerance; the result is what it had reached.
+/// An iteration ended before its tolerance; the result is what it had reached.
 pub const OFC_STATUS_NOT_CONVERGED: i32 = 5;
-/// The stream's model no longer fits the frame: the next frame is for colors. The old model serves until it is replaced.
+/// The stream's model no longer fits the frame; the next frame is for colors.
 pub const OFC_STATUS_COLD_START_NEEDED: i32 = 6;
 
-/// A pointer that must not be NULL is.
+/// A pointer that must not be NULL is NULL.
 pub const OFC_STATUS_NULL_POINTER: i32 = -10;
-/// A pointer is not aligned for its type, a workspace not to OFC_WORKSPACE_ALIGNMENT, or a stride of floats is not
-/// a multiple of four bytes.
+/// A pointer or stride is not aligned for its type, or for a workspace.
 pub const OFC_STATUS_MISALIGNED: i32 = -11;
 /// An output overlaps an input, the workspace or another output.
 pub const OFC_STATUS_OVERLAP: i32 = -12;
 
-/// A width, height or count is zero or negative.
+/// A width, a height or a count is too small.
 pub const OFC_STATUS_EMPTY: i32 = -20;
-/// More than 2^31 - 1 pixels, or a size beyond the address space.
+/// There are more than 2^31 - 1 pixels, or a size exceeds the address space.
 pub const OFC_STATUS_TOO_LARGE: i32 = -21;
 /// A row stride is smaller than a row.
 pub const OFC_STATUS_STRIDE_TOO_SMALL: i32 = -22;
 /// The workspace is smaller than its size function says.
 pub const OFC_STATUS_WORKSPACE_TOO_SMALL: i32 = -23;
 
-/// A pixel format is none of OFC_PIXEL_*.
+/// A pixel format is none of OFC_PIXEL_*, or not one that the call takes.
 pub const OFC_STATUS_UNKNOWN_FORMAT: i32 = -30;
 /// A parameter is out of its range, or an input number is not finite.
 pub const OFC_STATUS_INVALID_PARAMETER: i32 = -31;
-/// A reserved field is not zero: use the `_default` call, or initialize the whole struct.
+/// A reserved field is not zero: initialize the whole struct.
 pub const OFC_STATUS_RESERVED_NOT_ZERO: i32 = -32;
-/// The solution handed in holds no F: the solve that made it did not return OFC_STATUS_OK.
+/// The solution holds no F: the call that made it did not return OFC_STATUS_OK.
 pub const OFC_STATUS_NOT_SOLVED: i32 = -33;
-/// The solution handed in does not know how sure its orientation is: it was found by tilts alone, with the direct method.
+/// The direct method, which found the solution, knows no uncertainty.
 pub const OFC_STATUS_NO_COVARIANCE: i32 = -34;
 
-/// Fewer usable pixels than a fit needs.
+/// There are fewer usable pixels than a fit needs.
 pub const OFC_STATUS_TOO_FEW_PIXELS: i32 = -40;
-/// Too few usable pixels: most are black.
+/// There are too few usable pixels: most are black.
 pub const OFC_STATUS_DARK: i32 = -41;
-/// Too few usable pixels: most are saturated.
+/// There are too few usable pixels: most are saturated.
 pub const OFC_STATUS_SATURATED: i32 = -42;
-/// No two by two square of inliers to take differences on.
+/// No two by two pixels are all inliers, so there are no differences to take.
 pub const OFC_STATUS_NO_CELLS: i32 = -43;
 
-/// There is no stream at this address: ofc_stream_init() was not called, or something wrote over it.
+/// No stream is at this address, or something overwrote it.
 pub const OFC_STATUS_NO_STREAM: i32 = -50;
 /// No frame was begun.
 pub const OFC_STATUS_NO_FRAME: i32 = -51;
-/// A row comes twice, or one before it is missing. The frame goes on as if the call had not been.
+/// A row was given twice or skipped; the call changed nothing.
 pub const OFC_STATUS_ROW_ORDER: i32 = -52;
-/// The frame has all its rows.
+/// The frame has all its rows already.
 pub const OFC_STATUS_TOO_MANY_ROWS: i32 = -53;
-/// The frame ended before its last row: it is forgotten, and its pass is still to come.
+/// The frame ended before its last row; its pass must be repeated.
 pub const OFC_STATUS_TOO_FEW_ROWS: i32 = -54;
-/// This is not one row of the stream's width and sample type.
+/// The picture is not one row of the stream's width and sample type.
 pub const OFC_STATUS_ROW_MISMATCH: i32 = -55;
 
 fn message(status: ofc_status) -> &'static CStr {
@@ -121,7 +121,9 @@ fn message(status: ofc_status) -> &'static CStr {
     }
 }
 
-/// A sentence for a status, in static storage; never NULL, also for numbers that are no status.
+/// Says what a status means.
+/// @param status  Any number.
+/// @return A sentence in static storage; never NULL, not even for numbers that are no status.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_status_message(status: ofc_status) -> *const c_char {
     message(status).as_ptr()

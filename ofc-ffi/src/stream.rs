@@ -1,65 +1,57 @@
 //! Rows of a camera instead of a picture: one memory of a published size, in the caller's hands.
 
-use crate::image::{checked_pixel_count, dimension, ofc_image, ofc_pixel_format, sample_type};
-use crate::pointers::{Call, Contract, Plain, plain, unless_null};
-use crate::solve::{ofc_solution, ofc_solve_params};
-use crate::status::{
-    OFC_STATUS_COLD_START_NEEDED, OFC_STATUS_NO_STREAM, OFC_STATUS_NOT_SOLVED, OFC_STATUS_OK,
-    OFC_STATUS_TOO_LARGE, Refusal, ensure, ofc_status,
-};
-use crate::twin::{ToC, constants, from_c, to_c};
-use core::ffi::c_void;
-use ofc_core::math::arena::Need;
+use crate::prelude::*;
 use ofc_core::picture::Image;
 use ofc_core::solve::OrientationMethod;
 use ofc_core::stream::{self, Change, Drift, Memory, Params, Pass, State, Stream, StreamError};
 
 /// What the rows of a stream's frame are for: one of OFC_PASS_*.
 pub type ofc_stream_pass = i32;
-/// A cold start: a sample of the colors, and the model. A model of before serves until this pass ends.
+/// A cold start samples the colors and fits the model. The previous model serves until this pass ends.
 pub const OFC_PASS_COLORS: i32 = 1;
-/// A cold start: the tilts; with one candidate for the slants also F.
+/// A cold start estimates the tilts; with one candidate for the slants it finds F.
 pub const OFC_PASS_TILTS: i32 = 2;
-/// A cold start: the choice among the candidates for the slants, and F.
+/// A cold start chooses among the candidates for the slants, and finds F.
 pub const OFC_PASS_SLANTS: i32 = 3;
-/// F is there, and the frame refines it.
+/// F has been found, and the frame refines it.
 pub const OFC_PASS_REFINE: i32 = 4;
-/// A cold start with OFC_ORIENTATION_JOINT: how normals point outward; where the sample has room for all pixels also F.
+/// A cold start with the joint method looks at how normals point outward; where the sample holds all pixels it finds F.
 pub const OFC_PASS_OUTWARD: i32 = 5;
-/// A cold start with OFC_ORIENTATION_JOINT: integrability, and F.
+/// A cold start with the joint method looks at integrability, and finds F.
 pub const OFC_PASS_INTEGRABILITY: i32 = 6;
 
 /// What a stream does. Set by ofc_stream_params_default().
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_stream_params {
-    /// The parameters of ofc_solve(), but lmeds.sample_size is how many colors the stream has room for, at least 24, by default 2048;
-    /// tilt_estimator is OFC_TILT_PENTLAND or OFC_TILT_GIVEN, and slant_fallback OFC_FALLBACK_REFUSE or
-    /// OFC_FALLBACK_LEAST_SQUARES. A library built without the feature `full-streams`, for small memories, knows
-    /// OFC_ORIENTATION_DIRECT without shadow rejection alone, and this method is then the default.
+    /// The parameters of ofc_solve(), with these differences: `lmeds.sample_size` is how many colors the stream stores,
+    /// at least 24, by default 2048; `tilt_estimator` is OFC_TILT_PENTLAND or OFC_TILT_GIVEN; `slant_fallback` is
+    /// OFC_FALLBACK_REFUSE or OFC_FALLBACK_LEAST_SQUARES. A library without the feature `full-streams`, for small
+    /// memories, takes the direct method without shadow rejection alone, which is its default.
     pub solve: ofc_solve_params,
-    /// Where less than this share of the usable pixels fits the model, a frame does not refine it and
-    /// OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, what least median of squares rests on.
+    /// Where a smaller ratio of the usable pixels fits the model, a frame does not refine it and
+    /// OFC_STATUS_COLD_START_NEEDED is returned: in [0, 1]. Default 0.5, the breakdown point of least median of
+    /// squares.
     pub min_inlier_ratio: f64,
-    /// About how many pixels a frame that refines the model looks at, those that the cold start could not use counting a
-    /// third: every n-th row, at least 16, others from frame to frame. 0 looks at all rows. Default 16,384. The tilts
-    /// are averaged over about n frames.
+    /// About how many pixels a frame that refines the model uses, where a pixel that the cold start could not use
+    /// counts a third: every n-th row, at least 16 rows, and other rows from frame to frame. The tilts are averaged
+    /// over about n frames. 0 uses all rows. Default 16,384.
     pub refine_pixels: u32,
     /// Must be zero.
     pub reserved: [u32; 3],
 }
 
-/// What the last OFC_PASS_REFINE frame said of the model from before it.
+/// What the last frame of OFC_PASS_REFINE says about the model from before it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_stream_drift {
-    /// Share of the usable pixels, of those looked at, whose residual the old model accepts.
+    /// The ratio of the usable pixels in the rows that were used whose residual the old model accepts.
     pub inlier_ratio: f64,
-    /// Angles between the old and the new rows of F; zero where there is no new model.
+    /// Angles between the old and the new rows of F in radians; zero where there is no new model.
     pub angle_rad: [f64; 3],
-    /// Lengths of the new rows of F over those of the old; zero where there is no new model.
+    /// Lengths of the new rows of F over those of the old rows; zero where there is no new model.
     pub strength_ratio: [f64; 3],
-    /// Dispersion of the new residuals over that of the old; zero where there is no new model.
+    /// Dispersion of the new residuals over that of the old residuals; zero where there is no new model.
     pub dispersion_ratio: f64,
     /// 1 when there is a new model, 0 when a cold start is needed.
     pub refined: i32,
@@ -80,7 +72,8 @@ constants!(Pass = {
 to_c!(Params => ofc_stream_params { solve, refine_pixels; min_inlier_ratio: smallest_share } zero { reserved });
 from_c!(Params <= ofc_stream_params { solve, refine_pixels; min_inlier_ratio: smallest_share } zero { reserved } where are_valid);
 
-/// A stream in memory of the caller's: see ofc_stream_init(). It may be copied to another place of the same alignment.
+/// A stream in memory of the caller, made by ofc_stream_init(). It may be copied to another place of the same
+/// alignment.
 pub struct ofc_stream {
     _opaque: (),
 }
@@ -142,9 +135,8 @@ impl<'a> Call<'a> {
 }
 
 /// Sets every field to its default.
-///
-/// @param params  Output.
-/// @return OFC_STATUS_OK, OFC_STATUS_NULL_POINTER, OFC_STATUS_MISALIGNED.
+/// @param params  Output: the parameters.
+/// @return OFC_STATUS_OK; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_params) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -154,12 +146,15 @@ pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_param
     })
 }
 
-/// Bytes of memory that a stream needs: 4096, 21 for each color of the sample, and the difference where what rows take is more
-/// than 20 for each color. Rows take 3456 and 12 for each pixel of a row, or with OFC_ORIENTATION_JOINT 36 for each pixel of a
-/// row and 116 for each of 192 cells where that is more. OFC_STREAM_SIZE(width, height) is no less for the default parameters, for
-/// static buffers: 47,104 bytes at 320 x 240.
+/// Says how many bytes of memory a stream needs.
 ///
-/// @return The size, or 0 when an argument is invalid.
+/// There are 4096 bytes of state and one byte for each color of the sample, and more for what takes most: 20 bytes for
+/// each color of the sample; for rows, 3456 bytes and 12 for each pixel of a row; and for rows with the joint method,
+/// 36 bytes for each pixel of a row and 116 for each of up to 192 cells. OFC_STREAM_SIZE() is no less for the default
+/// parameters and static buffers: 47,104 bytes at 320 x 240.
+/// @param width,height  Size of the frames.
+/// @param params  The parameters that ofc_stream_init() will be given.
+/// @return The size; 0 when an argument is invalid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const ofc_stream_params) -> usize {
     // SAFETY: the contract of this function.
@@ -171,8 +166,10 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
     })
 }
 
-/// Makes a stream for frames that come row by row. A frame is begun, given its rows from the top down, and ended; which
-/// pass it is for follows from the ones before it:
+/// Makes a stream for frames that come row by row.
+///
+/// A frame is begun, given its rows from the top down, and ended. What it is for, its pass, follows from the frames
+/// before it:
 ///
 ///     ofc_stream_begin(stream, &pass);
 ///     for (int32_t y = 0; y < height; y++) {
@@ -183,28 +180,29 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 ///     }
 ///     ofc_status status = ofc_stream_end(stream, &pass);
 ///
-/// A cold start takes the pass over colors and those of its method, all of one frame or of consecutive frames of a scene at
-/// rest: with OFC_ORIENTATION_JOINT outward normals and integrability, with OFC_ORIENTATION_DIRECT tilts, and where eqs. 25 have several roots
-/// slants. Then there is F; a few rows of every
-/// further frame refine it, and for the others ofc_stream_row() does next to nothing. Medians and fits of
-/// a cold start are those of a stratified sample of the colors, and integrability is that of as many windows as there is
-/// room for. Where the sample has room for all pixels, the solution is that of ofc_solve() to the bit, but for the
-/// integral of a lone candidate, which is not computed (infinite); with OFC_ORIENTATION_DIRECT it is enough that it holds all usable
-/// ones. Without the feature `full-streams` fit.covariance is zero.
+/// A cold start begins with a pass over colors. With the joint method passes over outward normals and integrability
+/// follow; with the direct method a pass over tilts, and one over slants where eqs. 25 have several roots. All of them
+/// take the same frame, or consecutive frames of a scene at rest. Then F is known. A few rows of every further frame
+/// refine it; for the other rows ofc_stream_row() does next to nothing.
 ///
-/// Frames that refine follow C and the strength of the lights. With OFC_ORIENTATION_DIRECT they also follow the tilts; on
-/// OFC_ORIENTATION_JOINT lights that turn about the scene as a whole are not seen, and need ofc_stream_restart().
+/// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of as
+/// many windows as the memory holds. Where the sample holds all pixels, or with the direct method all usable pixels,
+/// the solution is equal to that of ofc_solve() bit by bit, but for the integral of a lone candidate, which is not
+/// computed (infinite). Without the feature `full-streams` fit.covariance is zero.
 ///
-/// Stack, for this call and every other that takes a stream: below 4 KiB with OFC_ORIENTATION_DIRECT, 20 KiB with OFC_ORIENTATION_JOINT.
+/// Frames that refine F follow C and the strength of the lights, and with the direct method also the tilts. With the
+/// joint method a turn of all lights about the scene goes unnoticed; ofc_stream_restart() is needed after it.
+/// @param width,height  Size of the frames.
+/// @param format  How samples are stored; each row has its own order and planes.
+/// @param params  The parameters.
+/// @param memory  ofc_stream_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT. They belong to the stream until the
+///     caller is done with it; nothing has to be freed.
+/// @param memory_bytes  How long the memory is.
+/// @param stream  Output: the stream, at the address of its memory.
+/// @return OFC_STATUS_OK; an argument status.
 ///
-/// @param width, height  Of the frames.
-/// @param format     How samples are stored; their order and planes are each row's own.
-/// @param params     See the struct.
-/// @param memory     ofc_stream_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT; contents do not matter. It is the stream's
-///                   until the caller is done with it: there is nothing to free.
-/// @param memory_bytes  Its size.
-/// @param stream     Output: the stream, at the address of its memory.
-/// @return OFC_STATUS_OK; OFC_STATUS_WORKSPACE_TOO_SMALL; the status of an invalid argument.
+/// Stack, for this call and every other one that takes a stream: below 4 KiB with the direct method, 20 KiB with the
+/// joint method.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_init(
     width: i32,
@@ -232,10 +230,9 @@ pub unsafe extern "C" fn ofc_stream_init(
     })
 }
 
-/// Forgets the model and any frame under way: the next frame is for colors.
-///
+/// Forgets the model and any frame that was begun. The next frame is for colors.
 /// @param stream  The stream.
-/// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM; the status of an invalid argument.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_restart(stream: *mut ofc_stream) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -245,11 +242,10 @@ pub unsafe extern "C" fn ofc_stream_restart(stream: *mut ofc_stream) -> ofc_stat
     })
 }
 
-/// Begins a frame. One that was not ended is forgotten.
-///
+/// Begins a frame. A frame that was not ended is forgotten.
 /// @param stream  The stream.
-/// @param pass    Output: what the frame is for, one of OFC_PASS_*; may be NULL.
-/// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM; the status of an invalid argument.
+/// @param pass  Output: what the frame is for, one of OFC_PASS_*; may be NULL.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_begin(stream: *mut ofc_stream, pass: *mut ofc_stream_pass) -> ofc_status {
     // SAFETY: the contract of this function.
@@ -264,13 +260,12 @@ pub unsafe extern "C" fn ofc_stream_begin(stream: *mut ofc_stream, pass: *mut of
     })
 }
 
-/// Takes the next row of the frame.
-///
+/// Takes the next row of the frame. The call changes nothing unless it returns OFC_STATUS_OK.
 /// @param stream  The stream.
-/// @param y       The row, 0 at the top.
-/// @param row     A picture of height 1; its mask, black and saturated pixels are left out.
+/// @param y  The row, 0 at the top.
+/// @param row  A picture of height 1. Pixels that are masked out, black, saturated or not finite are left out.
 /// @return OFC_STATUS_OK; OFC_STATUS_NO_STREAM, OFC_STATUS_NO_FRAME, OFC_STATUS_ROW_ORDER, OFC_STATUS_TOO_MANY_ROWS,
-///         OFC_STATUS_ROW_MISMATCH; the status of an invalid argument. Unless it is OFC_STATUS_OK the call changed nothing.
+///     OFC_STATUS_ROW_MISMATCH; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_row(
     stream: *mut ofc_stream,
@@ -287,15 +282,13 @@ pub unsafe extern "C" fn ofc_stream_row(
 }
 
 /// Ends the frame.
-///
 /// @param stream  The stream.
-/// @param pass    Output: what the next frame is for, one of OFC_PASS_*; may be NULL.
-/// @return OFC_STATUS_OK: the next pass follows from this one. OFC_STATUS_COLD_START_NEEDED: the frame does not fit the
-///         model, as ofc_stream_drift_get() says; the next pass is over colors. A cold start that comes to no F ends with
-///         OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_NO_TILT or
-///         OFC_STATUS_NO_CONSISTENT_SLANTS, or without any result with OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
-///         OFC_STATUS_SATURATED; the next pass is over colors. OFC_STATUS_NO_STREAM, OFC_STATUS_NO_FRAME,
-///         OFC_STATUS_TOO_FEW_ROWS; the status of an invalid argument.
+/// @param pass  Output: what the next frame is for, one of OFC_PASS_*; may be NULL.
+/// @return OFC_STATUS_OK when the next pass follows from this one. OFC_STATUS_COLD_START_NEEDED when the frame does not
+///     fit the model, as ofc_stream_drift_get() says. OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE,
+///     OFC_STATUS_NO_TILT, OFC_STATUS_NO_CONSISTENT_SLANTS, OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
+///     OFC_STATUS_SATURATED when a cold start found no F. After each of these but OFC_STATUS_OK the next pass is over
+///     colors. OFC_STATUS_NO_STREAM, OFC_STATUS_NO_FRAME, OFC_STATUS_TOO_FEW_ROWS; an argument status.
 ///
 /// Reference: section 3.4.
 #[unsafe(no_mangle)]
@@ -317,14 +310,13 @@ pub unsafe extern "C" fn ofc_stream_end(stream: *mut ofc_stream, pass: *mut ofc_
     })
 }
 
-/// What the last cold start found, and the frames that refined it since.
-///
-/// @param stream    The stream.
-/// @param solution  Output. After frames that refined it: F, its stages and the fit are the last frame's, rank is that of
-///                  the cold start, candidates have no integral (infinite), tilts come from the axes alone, covariances
-///                  are those of the cold start, and counts and pixel counts are of the pixels that were looked at.
-/// @return As ofc_solve(), for the cold start; OFC_STATUS_NOT_SOLVED, `solution` untouched, before its last pass;
-///         OFC_STATUS_NO_STREAM; the status of an invalid argument.
+/// Gives what the last cold start found, as refined by the frames since.
+/// @param stream  The stream.
+/// @param solution  Output: the solution. After frames that refined it, F, its stages and the fit come from the last
+///     frame; `rank` and all covariances come from the cold start; candidates have no integral (infinite); tilts come
+///     from the axes alone; and all counts are of the pixels that were used.
+/// @return The status that ofc_solve() would return for the cold start; OFC_STATUS_NOT_SOLVED before the last pass of
+///     the cold start; OFC_STATUS_NO_STREAM; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_solution(
     stream: *mut ofc_stream,
@@ -341,12 +333,11 @@ pub unsafe extern "C" fn ofc_stream_solution(
     })
 }
 
-/// What the last frame of OFC_PASS_REFINE says of the model from before it.
-///
+/// Gives what the last frame of OFC_PASS_REFINE says about the model from before it.
 /// @param stream  The stream.
-/// @param drift   Output.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED when there was no such frame since the cold start; OFC_STATUS_NO_STREAM; the
-///         status of an invalid argument.
+/// @param drift  Output: the drift.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED when there was no such frame since the cold start;
+///     OFC_STATUS_NO_STREAM; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_drift_get(
     stream: *mut ofc_stream,
@@ -371,14 +362,11 @@ pub unsafe extern "C" fn ofc_stream_drift_get(
     })
 }
 
-/// Unit normals of a row's inliers, under the model there is: any row of any frame.
-///
-/// @param stream   The stream.
-/// @param row      A picture of height 1.
-/// @param normals  Output: width times (x, y, z) floats, zero where there is no normal. Frame: x right, y up, z toward the
-///                 camera.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH; OFC_STATUS_NO_STREAM; the status of an invalid
-///         argument.
+/// Computes the unit normals of a row's inliers under the current model, for any row of any frame.
+/// @param stream  The stream.
+/// @param row  A picture of height 1.
+/// @param normals  Output: width (x, y, z) floats, x right, y up, z toward the camera; zero where there is no normal.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH; OFC_STATUS_NO_STREAM; an argument status.
 ///
 /// Reference: eq. 8.
 #[unsafe(no_mangle)]
@@ -391,13 +379,14 @@ pub unsafe extern "C" fn ofc_stream_normals_row(
     unsafe { Contract::kept() }.call(|call| write_row(call, stream, row, normals, 3, State::normals))
 }
 
-/// Writes what ofc_stream_normals_row() writes, in 8 bits a component.
+/// Computes the unit normals of a row's inliers under the current model, in 8 bits for each component.
+/// @param stream  The stream.
+/// @param row  A picture of height 1.
+/// @param normals  Output: width (x, y, z) bytes, each 255 (n + 1) / 2, rounded; three zeros, which are no unit normal,
+///     where there is no normal.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH; OFC_STATUS_NO_STREAM; an argument status.
 ///
-/// @param stream   The stream.
-/// @param row      A picture of height 1.
-/// @param normals  Output: width times (x, y, z) bytes, (n + 1) / 2 of 255, rounded; zeros, which is no normal's, where there
-///                 is none.
-/// @return As ofc_stream_normals_row().
+/// Reference: eq. 8.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_normals_row_packed(
     stream: *mut ofc_stream,
@@ -408,12 +397,11 @@ pub unsafe extern "C" fn ofc_stream_normals_row_packed(
     unsafe { Contract::kept() }.call(|call| write_row(call, stream, row, normals, 3, State::packed_normals))
 }
 
-/// Which pixels of a row are inliers, under the model there is.
-///
+/// Says which pixels of a row are inliers under the current model.
 /// @param stream  The stream.
-/// @param row     A picture of height 1.
-/// @param flags   Output: width bytes, 255 for an inlier and 0 elsewhere.
-/// @return As ofc_stream_normals_row().
+/// @param row  A picture of height 1.
+/// @param flags  Output: width bytes, 255 for an inlier and 0 elsewhere.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH; OFC_STATUS_NO_STREAM; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_inliers_row(
     stream: *mut ofc_stream,

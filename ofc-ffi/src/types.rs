@@ -1,8 +1,6 @@
 //! The structs that results consist of, and what the regression takes.
 
-use crate::pointers::plain;
-use crate::status::{OFC_STATUS_INVALID_PARAMETER, Refusal, ensure};
-use crate::twin::{FromC, ToC, constants, from_c, to_c};
+use crate::prelude::*;
 use ofc_core::color::ellipsoid::Ellipsoid;
 use ofc_core::color::inliers::{Band, Inliers};
 use ofc_core::color::lmeds::{Fit, Method, Params};
@@ -30,9 +28,9 @@ plain!(
 
 /// How C is fitted: one of OFC_FIT_*.
 pub type ofc_fit_method = i32;
-/// Least median of squares, the paper's.
+/// Least median of squares, as in the paper.
 pub const OFC_FIT_LEAST_MEDIAN: i32 = 0;
-/// Least squares over every usable pixel, none rejected: Woodham, Iwahori and Barman's, for pictures without outliers.
+/// Least squares over every usable pixel, for pictures without outliers.
 pub const OFC_FIT_LEAST_SQUARES: i32 = 1;
 
 constants!(Method = { LeastMedian: OFC_FIT_LEAST_MEDIAN, LeastSquares: OFC_FIT_LEAST_SQUARES });
@@ -41,26 +39,27 @@ constants!(Method = { LeastMedian: OFC_FIT_LEAST_MEDIAN, LeastSquares: OFC_FIT_L
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_lmeds_params {
-    /// Probability that at least one subset is free of outliers, in (0, 1). Default 0.9999.
+    /// Probability that at least one subset holds no outlier, in (0, 1). Default 0.9999.
     pub confidence: f64,
-    /// Share of outliers for which that holds, in [0, 1). Default 0.5.
+    /// Ratio of outliers for which `confidence` holds, in [0, 1). Default 0.5.
     pub outlier_ratio: f64,
-    /// Residuals above this many robust dispersions are outliers, > 0. Default 2.5.
+    /// Residuals above this many robust dispersions are outliers; > 0. Default 2.5.
     pub rejection: f64,
-    /// Confidence of the limits given with each coefficient, in (0, 1). Default 0.95.
+    /// Confidence level of each coefficient's limits, in (0, 1). Default 0.95.
     pub limits_confidence: f64,
-    /// A pixel is saturated, and left out, if a channel is at or above this, > 0; 0 stands for the largest value of the
-    /// pixel type, and for no limit with floats. Default 0.
+    /// A pixel with a channel at or above this level is saturated and left out; > 0. Zero stands for the largest value
+    /// of the pixel type, and for no limit with floats. Default 0.
     pub saturation: f64,
-    /// Fixes every random choice. Default 0.
+    /// Determines every random choice. Default 0.
     pub seed: u64,
     /// At least this many subsets are drawn, up to 10,000,000. Default 500.
     pub min_subsets: u32,
-    /// Exactly this many subsets, up to 10,000,000; 0 for as many as confidence and outlier_ratio ask for. Default 0.
+    /// Exactly this many subsets are drawn, up to 10,000,000; with 0, as many as `confidence` and `outlier_ratio` ask
+    /// for. Default 0.
     pub subsets: u32,
-    /// Pixels that the search looks at, at least 12; the result is evaluated on all. Default 10,000.
+    /// How many pixels the search uses, at least 12; the result is evaluated on all pixels. Default 10,000.
     pub sample_size: u32,
-    /// OFC_FIT_LEAST_MEDIAN or OFC_FIT_LEAST_SQUARES. Default OFC_FIT_LEAST_MEDIAN.
+    /// One of OFC_FIT_*. Default OFC_FIT_LEAST_MEDIAN.
     pub method: ofc_fit_method,
     /// Must be zero.
     pub reserved: [u32; 4],
@@ -88,23 +87,23 @@ pub(crate) fn saturation(level: f64) -> Result<Option<f32>, Refusal> {
     Ok((level > 0.0).then_some(level as f32))
 }
 
-/// What becomes of the pixels before any fit; the counts add up to width times height.
+/// What became of the pixels before any fit. The counts add up to width times height.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_pixel_counts {
-    /// Pixels that the fit may use.
+    /// How many pixels the fit may use.
     pub usable: i32,
-    /// Left out by the mask.
+    /// How many pixels the mask leaves out.
     pub masked_out: i32,
-    /// Zero (or negative) in all channels.
+    /// How many pixels are zero or negative in all channels.
     pub dark: i32,
-    /// At or above the saturation level in a channel.
+    /// How many pixels are at or above the saturation level in a channel.
     pub saturated: i32,
-    /// NaN or infinite in a channel.
+    /// How many pixels are NaN or infinite in a channel.
     pub non_finite: i32,
-    /// In the shadow of one of the lights.
+    /// How many pixels are in the shadow of one of the lights.
     pub shadowed: i32,
-    /// Largest absolute channel value of the usable pixels.
+    /// The largest absolute channel value of the usable pixels.
     pub largest: f32,
     /// Zero.
     pub reserved: u32,
@@ -114,21 +113,21 @@ to_c!(PixelCounts => ofc_pixel_counts {
     usable, masked_out, dark, saturated, non_finite, largest; shadowed: shaded
 } zero { reserved });
 
-/// A regression coefficient with what the regression knows of it.
+/// A regression coefficient and what the regression knows of it.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_estimate {
     /// The estimate.
     pub value: f64,
-    /// Its standard error.
+    /// The standard error of the estimate.
     pub standard_error: f64,
-    /// Value over standard error.
+    /// The estimate divided by its standard error.
     pub t: f64,
-    /// Two-sided p value of t: how likely so large a t is if the true value is 0.
+    /// The two-sided p value of t: how likely so large a t is if the true value is 0.
     pub p: f64,
-    /// Lower confidence limit.
+    /// The lower confidence limit.
     pub low: f64,
-    /// Upper confidence limit.
+    /// The upper confidence limit.
     pub high: f64,
 }
 
@@ -141,14 +140,14 @@ impl From<ofc_estimate> for Estimate {
     }
 }
 
-/// A face of the cone of colors that three lights make: where one of them is shaded, colors lie in a plane through black.
-/// Those near it, or beyond, with normal . rho below `least`, are no inliers.
+/// A plane through black that bounds the cone of colors under three lights. Colors lie in it where one of the lights is
+/// in shadow. A color rho is rejected where normal . rho is below the threshold.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_shadow_plane {
-    /// Of unit length, inward.
+    /// The unit normal of the plane, toward the colors that all lights reach.
     pub normal: [f32; 3],
-    /// In pixel values.
+    /// The distance from the plane below which colors are rejected, in pixel values.
     pub threshold: f32,
 }
 
@@ -161,26 +160,27 @@ impl From<ofc_shadow_plane> for Face {
     }
 }
 
-/// The pixels that obey the model, as a test of a pixel's color rho alone: finite, not black, below the saturation
-/// level, and rho^T C rho within both bands. It can be applied to another frame under the same lights.
+/// A test of a pixel's color rho that says whether the pixel obeys the model. A color passes that is finite, not black
+/// and below the saturation level, whose rho^T C rho lies within both bands, and that no shadow plane rejects. The test
+/// can be applied to other frames under the same lights.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_inlier_test {
-    /// Channels at or above this are saturated.
+    /// Channels at or above this level are saturated.
     pub saturation: f64,
     /// C of the first rejection, by residual: c11, c22, c33, c12, c13, c23.
     pub residual_form: [f64; 6],
-    /// Smallest accepted rho^T C rho.
+    /// The smallest accepted rho^T C rho with `residual_form` as C.
     pub residual_low: f64,
-    /// Largest accepted rho^T C rho.
+    /// The largest accepted rho^T C rho with `residual_form` as C.
     pub residual_high: f64,
-    /// C of the second rejection, by the length of the normal.
+    /// C of the second rejection, by the length of the normal: c11, c22, c33, c12, c13, c23.
     pub norm_form: [f64; 6],
-    /// Smallest accepted rho^T C rho.
+    /// The smallest accepted rho^T C rho with `norm_form` as C.
     pub norm_low: f64,
-    /// Largest accepted rho^T C rho.
+    /// The largest accepted rho^T C rho with `norm_form` as C.
     pub norm_high: f64,
-    /// Up to three faces of the cone of colors; those that are not there are zero.
+    /// Up to three planes; a plane that is not there is zero.
     pub shadow_planes: [ofc_shadow_plane; 3],
 }
 
@@ -217,34 +217,36 @@ impl FromC<ofc_inlier_test> for Inliers {
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_color_fit {
-    /// The C that minimizes the median squared residual.
+    /// The coefficients that minimize the median squared residual.
     pub robust: [f64; 6],
-    /// Square root of that median, over all usable pixels.
+    /// The square root of that median, over all usable pixels.
     pub median_residual: f64,
-    /// Robust dispersion s0 of eq. 12.
+    /// The robust dispersion s0 of eq. 12.
     pub dispersion: f64,
-    /// Robust coefficient of determination, 1 - median_residual^2.
+    /// The robust coefficient of determination, 1 - median_residual^2.
     pub r_squared: f64,
     /// The reweighted fit: least squares over the inliers.
     pub coefficients: [ofc_estimate; 6],
-    /// What squares and products of the errors of these coefficients are expected to be, the upper triangle row by row:
-    /// the covariance of least squares, the square of the bias that noise makes, and that of the difference from `robust`.
+    /// Expected squares and products of the errors of `coefficients`, the upper triangle row by row: the covariance of
+    /// least squares, plus the square of the bias that noise causes, plus the square of the difference from `robust`.
     pub covariance: [f64; 21],
-    /// Standard deviation of the inliers' residuals under the reweighted fit.
+    /// The standard deviation of the inliers' residuals under the reweighted fit.
     pub residual_deviation: f64,
     /// Root mean square of the inliers' colors along their principal axes, descending, in pixel values.
     pub color_deviations: [f64; 3],
-    /// Noise in each channel that explains the inliers' residuals, as a standard deviation in pixel values.
+    /// Standard deviation of the noise in each channel that explains the inliers' residuals, in pixel values.
     pub noise_deviation: f64,
-    /// The same from the median of the residuals, with regard to what the rejection cuts off: what to expect of single
-    /// pixels. In a stream without the feature `full-streams` only what rounding makes.
+    /// Standard deviation of the noise to expect in each channel of a single pixel, in pixel values, from the median
+    /// residual and with regard to what the rejection cuts off. In a stream without the feature `full-streams` it is
+    /// the noise that rounding causes.
     pub pixel_noise: f64,
-    /// Noise in each channel with which colors that do not determine C could look like these. solve refuses where it
-    /// is below 1.15 times noise_deviation; C is biased by about the inverse square of that ratio.
+    /// Standard deviation of the noise with which colors that do not determine C could look like these colors, in pixel
+    /// values. ofc_solve() returns OFC_STATUS_RANK_DEFICIENT where it is below 1.15 times `noise_deviation`. The
+    /// relative bias of C is about the inverse square of the quotient of both.
     pub degenerate_noise_deviation: f64,
-    /// Pixels within residual_form's band.
+    /// How many pixels have a residual that is accepted.
     pub inlier_count: i32,
-    /// Subsets drawn.
+    /// How many subsets were drawn.
     pub subsets: u32,
 }
 
@@ -257,18 +259,17 @@ to_c!(Fit => ofc_color_fit {
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_location {
-    /// Midpoint of the shortest interval that holds half of the numbers.
+    /// The midpoint of the shortest interval that holds half of the numbers.
     pub location: f64,
-    /// Half the length of that interval: the median distance from location.
+    /// Half the length of that interval, which is the median distance from the location.
     pub median_distance: f64,
-    /// Robust dispersion: 1.4826 (1 + 5 / (n - 1)) median_distance.
+    /// The robust dispersion 1.4826 (1 + 5 / (n - 1)) median_distance of n numbers.
     pub dispersion: f64,
 }
 
 to_c!(Location => ofc_location { location, median_distance, dispersion });
 
-/// What C says of the color-orientation matrix F before its orthogonal transformation is known (eq. 18). Matrices are
-/// row-major.
+/// What C says of F before the orthogonal transformation is known (eq. 18).
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_ellipsoid {
@@ -276,60 +277,59 @@ pub struct ofc_ellipsoid {
     pub c: [f64; 9],
     /// Eigenvalues of C, descending: the squared inverse semi-axes of the ellipsoid.
     pub eigenvalues: [f64; 3],
-    /// The root G0 = sqrt(Lambda) U^T of C = G0^T G0; G0 rho is the normal up to an orthogonal transformation.
+    /// G0 = sqrt(Lambda) U^T with C = G0^T G0; G0 rho is the normal up to an orthogonal transformation.
     pub root: [f64; 9],
     /// F F^T = C^-1, in (pixel value)^2.
     pub f_f_transposed: [f64; 9],
     /// Lengths of the rows f1, f2, f3 of F, in pixel values.
     pub norms: [f64; 3],
-    /// Cosines (h12, h13, h23) of the angles between the rows of F.
+    /// Cosines h12, h13, h23 of the angles between the rows of F.
     pub cosines: [f64; 3],
 }
 
 to_c!(Ellipsoid => ofc_ellipsoid { c, eigenvalues, root, f_f_transposed, norms, cosines });
 
-/// Tilts of the three channels' equivalent lights.
+/// Tilts of the rows of F, each the tilt of the light that one channel is equivalent to.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_tilts {
-    /// Counter-clockwise from x in (-pi, pi], for a convex surface.
+    /// Tilts in radians, in (-pi, pi], for a convex surface.
     pub tilt_rad: [f64; 3],
-    /// Mean gradient (Ix, Iy) of each channel over the inliers, pixel values a pixel, y up: r, g, b; zero where the
+    /// The mean gradients (Ix, Iy) of r, g, b over the inliers, in pixel values per pixel, y up; zero where the
     /// estimator has none.
     pub mean_gradient: [f64; 6],
 }
 
 to_c!(Tilts => ofc_tilts { ; tilt_rad: tilts, mean_gradient: gradients });
 
-/// Slants of the three channels' equivalent lights that are consistent with their tilts and angles.
+/// Slants of the rows of F that are consistent with their tilts and with the angles between them.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_slants {
-    /// From +z, in [0, pi/2].
+    /// Slants in radians, in [0, pi/2].
     pub slant_rad: [f64; 3],
-    /// Largest residual of eqs. 24.
+    /// The largest residual of eqs. 24.
     pub residual: f64,
-    /// Mean of the integral (15) over cells of inliers, per pixel^2; infinite where F is rank-deficient, 0 where no
+    /// The integral (15) as a mean over cells of inliers, per pixel^2; infinite where F is rank-deficient, 0 where no
     /// picture is involved.
     pub integral: f64,
-    /// The branch of eqs. 25, 1 to 8: the signs of their square roots, 1 for (+,+,+) and 8 for (-,-,-); 0 for least
-    /// squares.
+    /// The branch of eqs. 25, from 1 for the signs (+,+,+) of the square roots to 8 for (-,-,-); 0 for least squares.
     pub branch: i32,
     /// Zero.
     pub reserved: u32,
 }
 
-/// The color-orientation matrix F, rho = F n, row-major.
+/// The color-orientation matrix F with rho = F n.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_orientation {
-    /// Row i is f_i: strength and direction of the one light that channel i could have been lit by, in pixel values.
+    /// F in pixel values. Row i is the one light that channel i could have been lit by: strength times direction.
     pub f: [f64; 9],
-    /// The inverse, n = f_inverse rho, over the singular values above the threshold.
+    /// The inverse of F over the singular values above the threshold, so that n = f_inverse rho.
     pub f_inverse: [f64; 9],
     /// Singular values of F, descending.
     pub singular_values: [f64; 3],
-    /// How many of them are above the threshold: 3 where F can be inverted.
+    /// How many singular values are above the threshold: 3 where F can be inverted.
     pub rank: i32,
     /// Zero.
     pub reserved: u32,
@@ -342,9 +342,9 @@ from_c!(Orientation <= ofc_orientation { f, f_inverse, singular_values, rank } w
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_integrability {
-    /// Mean of (dp/dy - dq/dx)^2, per pixel^2.
+    /// The mean of (dp/dy - dq/dx)^2, per pixel^2.
     pub mean: f64,
-    /// How many cells.
+    /// How many cells there are.
     pub cells: i32,
     /// Zero.
     pub reserved: u32,

@@ -1,33 +1,25 @@
 //! How sure C, F and the normals are, and where the matte model does not hold.
 
-use crate::image::{ofc_image, size};
-use crate::orientation::solved;
-use crate::pointers::{Contract, plain};
-use crate::solve::{OFC_EVIDENCE_TILTS_ALONE, ofc_solution};
-use crate::status::{
-    OFC_STATUS_INVALID_PARAMETER, OFC_STATUS_NO_COVARIANCE, OFC_STATUS_OK, Refusal, ensure, ofc_status,
-};
-use crate::twin::{FromC, ToC};
+use crate::prelude::*;
 use ofc_core::color::inliers::Inliers;
 use ofc_core::color::regression::whole;
 use ofc_core::math::mat3::Mat3;
 use ofc_core::surface::uncertainty::{Sources, Uncertainty, of_f, of_f_inverse, of_turn};
 use ofc_core::surface::wolff::Dielectric;
 
-/// What squares and products of errors are expected to be; symmetric matrices, row-major. Errors are those of one picture
-/// among many: all its pixels share them.
+/// Expected squares and products of errors, as symmetric matrices. All pixels of a picture share these errors.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_covariance {
-    /// Of c11, c22, c33, c12, c13, c23, (pixel value)^-4.
+    /// The covariance of c11, c22, c33, c12, c13, c23, in (pixel value)^-4.
     pub c: [f64; 36],
-    /// Of the nine entries of F, row-major, (pixel value)^2.
+    /// The covariance of the nine entries of F, row by row, in (pixel value)^2.
     pub f: [f64; 81],
-    /// Of the nine entries of F^-1, row-major, (pixel value)^-2.
+    /// The covariance of the nine entries of F^-1, row by row, in (pixel value)^-2.
     pub f_inverse: [f64; 81],
-    /// Of the small rotation of all normals, in their frame, for the C that was found; radians squared.
+    /// The covariance of the small rotation of all normals, in their frame and in radians^2, for the C that was found.
     pub rotation: [f64; 9],
-    /// Standard deviation of the noise in each channel, in pixel values, what rounding adds included.
+    /// Standard deviation of the noise in each channel in pixel values, with the noise that rounding adds.
     pub pixel_noise: f64,
 }
 
@@ -49,12 +41,11 @@ fn sources(solution: &ofc_solution) -> Result<Sources, Refusal> {
     })
 }
 
-/// The covariances of C and F, to first order.
-///
-/// @param solution    What ofc_solve() wrote with OFC_STATUS_OK.
-/// @param covariance  Output.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's
-///         method); OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+/// Computes the covariances of C and F, to first order.
+/// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
+/// @param covariance  Output: the covariances.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by the direct method; an
+///     argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_solution_covariance(
     solution: *const ofc_solution,
@@ -86,19 +77,20 @@ fn row_major<const N: usize, const SQUARE: usize>(matrix: &[[f64; N]; N]) -> [f6
     entries
 }
 
-/// The 1-sigma angle of each normal that ofc_normals_compute() makes: that below which 68.3 % of errors are expected to lie;
-/// 95.4 to 99.0 % lie below twice, 99.7 to 100.0 % below three times the angle. It is made of the noise in the colors (with
-/// what rounding adds) and of the errors of C and of the rotation, which all pixels of a picture share: on one picture shares
-/// may be far from these, over many they are not. Pixels that do not obey the model and pass for inliers, and the choice
-/// between convex and concave, are not in it.
+/// Computes the 1-sigma angle of each normal that ofc_normals_compute() makes: 68.3 % of errors are expected below it,
+/// 95.4 to 99.0 % below twice the angle, and 99.7 to 100.0 % below three times the angle.
 ///
-/// @param image     The picture.
+/// The angle comes from the noise in the colors, with the noise that rounding adds, and from the errors of C and of the
+/// rotation. All pixels of a picture share these last two, so the percentages hold over many pictures and may be far
+/// off on one. Not part of the angle are pixels that pass for inliers without obeying the model, and the choice between
+/// convex and concave.
+/// @param image  The picture.
 /// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
-/// @param angle_rad  Output: height rows of width floats, row 0 at the top; above 0 and at most pi, and pi where there is no
-///                  normal. Exact colors make 0.
-/// @param angle_stride_bytes  Bytes from a row to the next, a multiple of 4; what lies between rows is left alone.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by tilts (the paper's
-///         method), of which nobody knows how sure it is; OFC_STATUS_INVALID_PARAMETER; the status of an invalid argument.
+/// @param angle_rad  Output: height rows of width floats, in radians: above 0 and at most pi, pi where there is no
+///     normal, and 0 for exact colors.
+/// @param angle_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by the direct method; an
+///     argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_normals_uncertainty(
     image: *const ofc_image,

@@ -16,13 +16,15 @@ const VERSION: u32 = number(env!("CARGO_PKG_VERSION_MAJOR")) * 10_000
     + number(env!("CARGO_PKG_VERSION_MINOR")) * 100
     + number(env!("CARGO_PKG_VERSION_PATCH"));
 
-/// The version of the library that is running: major * 10000 + minor * 100 + patch, to be compared with OFC_VERSION.
+/// Says the version of the library that is running, to be compared with OFC_VERSION.
+/// @return major * 10000 + minor * 100 + patch.
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_version() -> u32 {
     VERSION
 }
 
-/// The version as text, in static storage.
+/// Says the version of the library that is running as text.
+/// @return The version in static storage, such as "0.2.0".
 #[unsafe(no_mangle)]
 pub extern "C" fn ofc_version_string() -> *const c_char {
     const TEXT: &CStr = match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
