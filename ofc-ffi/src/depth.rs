@@ -135,7 +135,7 @@ pub extern "C" fn ofc_depth_workspace_size(width: i32, height: i32) -> usize {
     if width == 0 || height == 0 {
         return 0;
     }
-    depth::workspace_len(width, height).map_or(0, |singles| bytes(Need::of_singles(singles)))
+    depth::need(width, height).map_or(0, bytes)
 }
 
 /// A map of `channels` numbers a pixel, or none where the pointer is NULL.
@@ -203,8 +203,8 @@ pub unsafe extern "C" fn ofc_depth_integrate(
         let params: DepthParams = call.params(params)?;
         let (depths, stride) = call.output_rows(depth, size, 1, depth_stride_bytes)?;
         let [width, height] = size;
-        let need = depth::workspace_len(width, height).unwrap_or(0);
-        let workspace = call.floats(workspace, workspace_bytes, need)?;
+        let need = depth::need(width, height).unwrap_or_default();
+        let workspace = call.arena(workspace, workspace_bytes, need)?;
         let result = call.output(result)?;
         let found = depth::integrate(&task, &params, workspace, depths, stride)?;
         *result = found.to_c();

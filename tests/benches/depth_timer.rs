@@ -3,7 +3,8 @@
 //! `depth_timer NORMALS.f32 MASK.u8 WIDTH HEIGHT DEPTH.f32 [METHOD [REPEATS]]` reads tightly packed normals (three f32 a
 //! pixel) and mask, writes the depth, and prints the best and the median time in milliseconds and the result.
 
-use ofc_core::surface::depth::{DepthInput, DepthParams, Method, Plane, Slopes, integrate, workspace_len};
+use ofc_core::surface::depth::{DepthInput, DepthParams, Method, Plane, Slopes, integrate, need};
+use ofc_tests::depth_workspace::Workspace;
 use std::time::Instant;
 
 fn floats(path: &str) -> Vec<f32> {
@@ -36,14 +37,14 @@ fn main() {
         prior: None,
     };
     let params = DepthParams { method, tolerance, ..DepthParams::default() };
-    let len = workspace_len(width, height).expect("size");
-    let mut workspace = vec![1.0_f32; len];
+    let bytes = need(width, height).expect("size").bytes();
+    let mut workspace = Workspace::new(width, height, 1.0);
     let mut depth = vec![1.0_f32; width * height];
     let mut times = Vec::new();
     let mut result = None;
     for _ in 0..repeats {
         let start = Instant::now();
-        result = Some(integrate(&input, &params, &mut workspace, &mut depth, width).expect("integrate"));
+        result = Some(integrate(&input, &params, workspace.arena(), &mut depth, width).expect("integrate"));
         times.push(start.elapsed().as_secs_f64() * 1e3);
     }
     times.sort_by(f64::total_cmp);
@@ -52,7 +53,7 @@ fn main() {
         "best {:.2} median {:.2} bytes_per_pixel {:.2} cycles {} residual {:.3e} regions {} pixels {} converged {}",
         times[0],
         times[times.len() / 2],
-        4.0 * len as f64 / (width * height) as f64,
+        bytes as f64 / (width * height) as f64,
         result.cycles,
         result.residual,
         result.regions,

@@ -12,6 +12,7 @@ use ofc_core::solve::{OrientationMethod, Outcome, Params, Solution, solve, works
 use ofc_core::surface::depth::{self, DepthInput, DepthParams, Method, Plane, Slopes};
 use ofc_core::surface::normals::{Length, compute};
 use ofc_tests::depth_maps::{TABLE_1_COLORS, bust, table_1_directions, terrain};
+use ofc_tests::depth_workspace::Workspace;
 use ofc_tests::linear_scenes::{Encoded, Layout, Scene, ellipsoid, three_lights};
 use ofc_tests::shaded_scenes::{self, CLEAN, OTHER, cap, moved};
 
@@ -114,9 +115,9 @@ fn integrate_vga(bencher: Bencher, method: Method) {
     let slopes = Slopes::Normals(Plane::new(&normals, 640, 480, 3, 640 * 3).expect("its own size"));
     let input = DepthInput { slopes, mask: None, weights: None, prior: None };
     let params = DepthParams { method, ..DepthParams::default() };
-    let mut workspace = vec![0.0; depth::workspace_len(640, 480).expect("a picture")];
+    let mut workspace = Workspace::new(640, 480, 0.0);
     let mut depths = vec![0.0; PIXELS];
-    bencher.bench_local(|| depth::integrate(black_box(&input), &params, &mut workspace, &mut depths, 640));
+    bencher.bench_local(|| depth::integrate(black_box(&input), &params, workspace.arena(), &mut depths, 640));
 }
 
 fn main() {

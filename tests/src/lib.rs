@@ -5,6 +5,8 @@ pub mod bust;
 pub mod call_graph;
 pub mod depth_maps;
 pub mod depth_oracle;
+pub mod depth_scenes;
+pub mod depth_workspace;
 pub mod header_text;
 pub mod linear;
 pub mod linear_scenes;

@@ -9,6 +9,7 @@ use ofc_core::render::DepthMap;
 use ofc_core::solve::{self, OrientationMethod, Outcome, Solution};
 use ofc_core::surface::depth::{self, DepthInput, DepthParams, Plane, Slopes};
 use ofc_core::surface::normals::{self, Length};
+use ofc_tests::depth_workspace::Workspace;
 use ofc_tests::photographs;
 use ofc_tests::shaded_scenes::{CLEAN, Matrix, PAPER, Scene, dot};
 
@@ -40,14 +41,14 @@ fn integrated(image: &Image, solution: &Solution, orientation: &Orientation) -> 
         weights: None,
         prior: None,
     };
-    let mut workspace = vec![0.0; depth::workspace_len(width, height).unwrap()];
+    let mut workspace = Workspace::new(width, height, 0.0);
     let mut depths = vec![0.0_f32; width * height];
     let params = DepthParams { pixel_pitch: 0.25, ..DepthParams::default() };
-    depth::integrate(&input, &params, &mut workspace, &mut depths, width).expect("depth");
+    depth::integrate(&input, &params, workspace.arena(), &mut depths, width).expect("depth");
     let bytes: Vec<u8> = depths.iter().flat_map(|z| z.to_ne_bytes()).collect();
     let surface = DepthMap::new(&bytes, width, height, 4 * width, 0.25).unwrap();
     let coefficients = solution.fit.expect("a fit").coefficients;
-    check(image, &solution.inliers, orientation, &coefficients, Some(&surface), &mut workspace)
+    check(image, &solution.inliers, orientation, &coefficients, Some(&surface), &mut workspace.singles)
         .unwrap()
         .depth
         .unwrap()

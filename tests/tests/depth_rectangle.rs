@@ -2,10 +2,9 @@
 //! documentation promises about them.
 
 use ofc_core::math::rng::Rng;
-use ofc_core::surface::depth::{
-    DepthInput, DepthParams, DepthResult, Method, Plane, Slopes, integrate, workspace_len,
-};
+use ofc_core::surface::depth::{DepthInput, DepthParams, DepthResult, Method, Plane, Slopes, integrate};
 use ofc_tests::depth_oracle::{self as oracle, Field};
+use ofc_tests::depth_workspace::Workspace;
 
 /// Distance from the oracle as a part of the depth's RMS: rounding, which long thin rectangles let grow most.
 const NEAR_ORACLE: f64 = 1e-5;
@@ -80,9 +79,9 @@ impl Scene {
 
 fn run(input: &DepthInput, params: &DepthParams, dirt: f32) -> (Vec<f32>, DepthResult) {
     let [width, height] = input.size();
-    let mut workspace = vec![dirt; workspace_len(width, height).unwrap()];
+    let mut workspace = Workspace::new(width, height, dirt);
     let mut depth = vec![9.0; width * height];
-    let result = integrate(input, params, &mut workspace, &mut depth, width).unwrap();
+    let result = integrate(input, params, workspace.arena(), &mut depth, width).unwrap();
     (depth, result)
 }
 

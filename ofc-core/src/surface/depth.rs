@@ -15,17 +15,21 @@
 //! the unit of [`DepthParams::pixel_pitch`].
 //!
 //! # Scratch
-//! [`workspace_len`] numbers, about 17/3 a pixel (23 bytes). What they hold before changes nothing.
+//! [`need`] says how many numbers and integers, about 17/3 a pixel together (23 bytes). What they hold before changes
+//! nothing.
 //!
 //! # Example
 //! ```
-//! use ofc_core::surface::depth::{DepthInput, DepthParams, Plane, Slopes, integrate, workspace_len};
+//! use ofc_core::math::arena::Arena;
+//! use ofc_core::surface::depth::{DepthInput, DepthParams, Plane, Slopes, integrate, need};
 //! let normals = [[0.6_f32, 0.0, 0.8]; 12].as_flattened().to_vec();
 //! let slopes = Slopes::Normals(Plane::new(&normals, 4, 3, 3, 12).unwrap());
 //! let input = DepthInput { slopes, mask: None, weights: None, prior: None };
-//! let mut workspace = vec![0.0; workspace_len(4, 3).unwrap()];
+//! let need = need(4, 3).unwrap();
+//! let (mut singles, mut integers) = (vec![0.0; need.singles], vec![0; need.integers]);
+//! let arena = Arena::new(&mut [], &mut singles, &mut integers);
 //! let mut depth = [0.0; 12];
-//! let result = integrate(&input, &DepthParams::default(), &mut workspace, &mut depth, 4).unwrap();
+//! let result = integrate(&input, &DepthParams::default(), arena, &mut depth, 4).unwrap();
 //! assert!(result.converged && result.regions == 1);
 //! assert!((depth[0] - depth[1] - 0.75).abs() < 1e-6);
 //! ```
@@ -37,30 +41,35 @@ mod cosine_transform;
 mod coupled;
 mod fourier;
 mod grid;
+mod hierarchy;
 mod input;
+mod job;
 mod operator;
-mod paper;
 mod parameters;
 mod poisson;
 mod rectangle;
 mod regions;
 mod right_side;
 mod solver;
+mod span;
 mod sweep;
 mod transfer;
 mod trend;
 mod tridiagonal;
+mod word;
+
+use crate::math::arena::{Arena, Need};
 
 pub use input::{DepthInput, Plane, Slopes, WEIGHT_RANGE};
 pub use parameters::{DepthError, DepthParams, DepthResult, MAX_PIXELS, Method};
 
-/// Numbers that [`integrate`] needs as workspace for a picture of this size; `None` if there is no such picture.
+/// What [`integrate`] needs as workspace for a picture of this size; `None` if there is no such picture.
 ///
-/// With w and h for width and height that is `4 ((h + 2) (w + 1) + 1) + 5 (floor(w h / 3) + 3 w + 2 h + 180) +
-/// 4 (2 h + 30) + 4 (w + 2)`.
+/// With w and h for width and height that is `3 ((h + 2) (w + 1) + 1) + 5 (floor(w h / 3) + 3 w + 2 h + 180) + 4 (w + 2)`
+/// numbers in single precision and `(h + 2) (w + 1) + 1 + 4 (2 h + 30)` integers.
 #[must_use]
-pub const fn workspace_len(width: usize, height: usize) -> Option<usize> {
-    grid::workspace_len(width, height)
+pub const fn need(width: usize, height: usize) -> Option<Need> {
+    hierarchy::need(width, height)
 }
 
 /// Integrates `input` into `depth`, rows `depth_row_stride` numbers apart. Pixels without a depth become NaN (the
@@ -76,7 +85,7 @@ pub const fn workspace_len(width: usize, height: usize) -> Option<usize> {
 pub fn integrate(
     input: &DepthInput,
     params: &DepthParams,
-    workspace: &mut [f32],
+    mut workspace: Arena,
     depth: &mut [f32],
     depth_row_stride: usize,
 ) -> Result<DepthResult, DepthError> {
@@ -84,19 +93,18 @@ pub fn integrate(
     if !input.is_consistent() {
         return Err(DepthError::Size);
     }
-    let need = workspace_len(width, height).ok_or(DepthError::Size)?;
+    let need = need(width, height).ok_or(DepthError::Size)?;
     if !params.is_valid() {
         return Err(DepthError::Parameter);
     }
     let span = crate::picture::span(width, height, 1, depth_row_stride).map_err(|_| DepthError::Output)?;
     let data = depth.get_mut(..span).ok_or(DepthError::Output)?;
     let grid = grid::Grid { width, height };
-    let parts = grid::split(grid, workspace).ok_or(DepthError::Workspace(need))?;
+    let parts = hierarchy::split(grid, &mut workspace).ok_or(DepthError::Workspace(need))?;
     let output = solver::Output { data, row_stride: depth_row_stride, width };
-    let job = poisson::Job { input, params, parts, output };
+    let job = job::Job { input, params, parts, output };
     match params.method {
-        Method::Poisson => poisson::integrate(job),
-        Method::Paper => paper::integrate(job),
+        Method::Poisson | Method::Paper => poisson::integrate(job),
         Method::Coupled => coupled::integrate(job),
     }
     // A part of the workspace that is not where it was computed to be: cannot happen, and needs no panic to say so.

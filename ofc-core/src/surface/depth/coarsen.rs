@@ -9,9 +9,12 @@
 //! paths are parallel. Where all weights are one that gives one again; along a path one pixel wide it gives a half (two
 //! edges in series), and behind a neck it falls with the number of grids, as the resistance of a neck does.
 
-use super::grid::{CoarseArrays, Grid, Hierarchy, Span};
-use super::operator::{Attachment, Coarse, Fine, Operator, Packing, at, attach_coarse, attach_fine};
+use super::grid::Grid;
+use super::hierarchy::{CoarseArrays, Hierarchy};
+use super::operator::{Coarse, Fine, Operator, Packing, at, attach_coarse, attach_fine};
+use super::span::{Span, StoredSpan};
 use super::transfer::beyond;
+use super::word::{Attachment, ONE};
 
 /// A grid whose attachments can be set.
 trait Attachable {
@@ -24,7 +27,7 @@ trait Attachable {
 
 struct FineGrid<'a, P> {
     grid: Grid,
-    packed: &'a mut [f32],
+    words: &'a mut [u32],
     packing: P,
 }
 
@@ -35,11 +38,11 @@ impl<P: Packing> Attachable for FineGrid<'_, P> {
         Self: 'r;
 
     fn view(&self) -> Fine<'_, P> {
-        Fine { grid: self.grid, packed: self.packed, packing: self.packing }
+        Fine { grid: self.grid, words: self.words, packing: self.packing }
     }
 
     fn attach(&mut self, index: usize, attachment: Attachment) {
-        attach_fine(self.packed, index, attachment);
+        attach_fine(self.words, index, attachment);
     }
 }
 
@@ -78,16 +81,16 @@ pub(super) fn equations(grid: Grid, arrays: CoarseArrays<'_>) -> (Coarse<'_>, &[
 #[inline(never)]
 pub(super) fn build<P: Packing>(
     grid: Grid,
-    packed: &mut [f32],
+    words: &mut [u32],
     packing: P,
     hierarchy: &mut Hierarchy,
 ) -> Option<()> {
     hierarchy.coarse.fill(0.0);
-    find_fine_spans(Fine { grid, packed, packing }, hierarchy);
-    if attach_strays(&mut FineGrid { grid, packed, packing }, hierarchy.spans) {
-        find_fine_spans(Fine { grid, packed, packing }, hierarchy);
+    find_fine_spans(Fine { grid, words, packing }, hierarchy);
+    if attach_strays(&mut FineGrid { grid, words, packing }, hierarchy.spans) {
+        find_fine_spans(Fine { grid, words, packing }, hierarchy);
     }
-    let finest = Fine { grid, packed, packing };
+    let finest = Fine { grid, words, packing };
     let levels = hierarchy.levels();
     if levels > 1 {
         let (mut next, spans) = hierarchy.first()?;
@@ -109,12 +112,12 @@ pub(super) fn build<P: Packing>(
 
 #[inline(never)]
 fn find_fine_spans<P: Packing>(finest: Fine<P>, hierarchy: &mut Hierarchy) {
-    let is_active = |index| at(finest.packed, index) != 0.0;
+    let is_active = |index| at(finest.words, index) != 0;
     let are_unit = |index| finest.are_unit(index);
     find_spans(finest.grid, hierarchy.spans_mut(0), is_active, |index| finest.is_unit(index), are_unit);
 }
 
-fn find_coarse_spans(coarse: Coarse, spans: &mut [f32]) {
+fn find_coarse_spans(coarse: Coarse, spans: &mut [StoredSpan]) {
     let is_active = |index| strength(&coarse, index) > 0.0;
     let are_unit = |index| coarse.are_unit(index);
     find_spans(coarse.grid, spans, is_active, |index| coarse.is_unit(index), are_unit);
@@ -134,7 +137,7 @@ const TOGETHER: usize = 16;
 /// The span of every row; `are_unit` may say of the [`TOGETHER`] pixels from an index on that all are unit.
 fn find_spans(
     grid: Grid,
-    spans: &mut [f32],
+    spans: &mut [StoredSpan],
     is_active: impl Fn(usize) -> bool,
     is_unit: impl Fn(usize) -> bool,
     are_unit: impl Fn(usize) -> bool,
@@ -164,7 +167,7 @@ fn find_spans(
 
 /// Finds the pixels that are cut off from their block and attaches them to another. Returns whether there are any.
 #[inline(never)]
-fn attach_strays<A: Attachable>(target: &mut A, spans: &[f32]) -> bool {
+fn attach_strays<A: Attachable>(target: &mut A, spans: &[StoredSpan]) -> bool {
     let grid = target.view().grid();
     let mut strays = 0_usize;
     for y in (0..grid.height).step_by(2) {
@@ -277,7 +280,7 @@ fn path(inner: f32, across: f32, other_inner: f32) -> f32 {
 
 /// The weights and masses of the next coarser grid.
 #[inline(never)]
-fn coarsen<O: Operator>(operator: &O, spans: &[f32], coarse: &mut CoarseArrays) {
+fn coarsen<O: Operator>(operator: &O, spans: &[StoredSpan], coarse: &mut CoarseArrays) {
     let grid = operator.grid();
     let coarse_grid = grid.coarser();
     let stride = grid.stride();
@@ -337,7 +340,7 @@ fn coarsen<O: Operator>(operator: &O, spans: &[f32], coarse: &mut CoarseArrays) 
 }
 
 /// The blocks of row `y` of the coarse grid, whose edges join pixels with unit edges only.
-fn unit_blocks(spans: &[f32], grid: Grid, y: usize) -> (usize, usize) {
+fn unit_blocks(spans: &[StoredSpan], grid: Grid, y: usize) -> (usize, usize) {
     if 2 * y + 2 >= grid.height {
         return (0, 0);
     }
@@ -352,7 +355,7 @@ fn unit_blocks(spans: &[f32], grid: Grid, y: usize) -> (usize, usize) {
 
 /// Every pixel's mass goes to the block it is attached to.
 #[inline(never)]
-fn add_masses<O: Operator>(operator: &O, spans: &[f32], coarse: &mut CoarseArrays) {
+fn add_masses<O: Operator>(operator: &O, spans: &[StoredSpan], coarse: &mut CoarseArrays) {
     let grid = operator.grid();
     let coarse_grid = grid.coarser();
     for y in 0..grid.height {
@@ -386,26 +389,25 @@ impl<P: Packing> Fine<'_, P> {
         let stride = self.grid.stride();
         [index, index - 1, index + 1, index - stride, index + stride]
             .iter()
-            .all(|&index| at(self.packed, index) == 1.0)
+            .all(|&index| at(self.words, index) == ONE)
     }
 
     /// Whether all of the pixels from `index` on are.
     #[inline(always)]
     fn are_unit(&self, index: usize) -> bool {
         let stride = self.grid.stride();
-        are_one(self.packed, index - stride)
-            && are_one(self.packed, index)
-            && are_one(self.packed, index + stride)
+        are_all(self.words, index - stride, ONE)
+            && are_all(self.words, index, ONE)
+            && are_all(self.words, index + stride, ONE)
     }
 }
 
-/// Whether [`TOGETHER`] numbers from `index` on, and the one before and the one behind, are one.
+/// Whether [`TOGETHER`] numbers from `index` on, and the one before and the one behind, are `value`.
 #[inline(always)]
-fn are_one(array: &[f32], index: usize) -> bool {
+fn are_all<T: Copy + PartialEq>(array: &[T], index: usize, value: T) -> bool {
     let numbers = array.get(index - 1..).and_then(|rest| rest.first_chunk::<{ TOGETHER + 2 }>());
-    numbers.is_some_and(|numbers| {
-        numbers.iter().fold(0, |others, number| others | (number.to_bits() ^ 1.0_f32.to_bits())) == 0
-    })
+    // Without a way out of the loop, so that all are compared at once.
+    numbers.is_some_and(|numbers| numbers.iter().fold(true, |all, number| all & (*number == value)))
 }
 
 impl Coarse<'_> {
@@ -425,7 +427,7 @@ impl Coarse<'_> {
     #[inline(always)]
     fn are_unit(&self, index: usize) -> bool {
         let stride = self.grid.stride();
-        let edges = |index| are_one(self.east, index) && are_one(self.south, index);
+        let edges = |index| are_all(self.east, index, 1.0) && are_all(self.south, index, 1.0);
         let mass = self.mass.get(index..).and_then(|rest| rest.first_chunk::<TOGETHER>());
         edges(index - stride)
             && edges(index)

@@ -18,7 +18,7 @@ const COLUMNS: usize = 16;
 pub(super) struct CosineTransform<'a> {
     lengths: Lengths,
     twiddles: &'a mut [f32],
-    order: &'a mut [f32],
+    order: &'a mut [u32],
     turns: &'a mut [f32],
     scratch: &'a mut [Row],
 }
@@ -36,18 +36,23 @@ impl Rows<&mut [f32]> {
 }
 
 impl<'a> CosineTransform<'a> {
-    /// Numbers that are needed as workspace for columns of `n`.
+    /// Numbers that are needed as workspace for columns of `n`, beside `n` integers.
     pub const fn workspace_len(n: usize) -> usize {
-        // Twiddles, order, scratch; six factors for every pair of frequencies.
-        (2 + 1 + COLUMNS) * n + 6 * (n / 2 + 1)
+        // Twiddles, scratch; six factors for every pair of frequencies.
+        (2 + COLUMNS) * n + 6 * (n / 2 + 1)
     }
 
     /// Prepares the transform of columns of `n` numbers; the forward transform multiplies frequency k by `weight(k)`.
     /// `None` if `n` has large prime factors or the workspace is too short.
-    pub fn new(n: usize, weight: impl Fn(usize) -> f64, mut workspace: &'a mut [f32]) -> Option<Self> {
+    pub fn new(
+        n: usize,
+        weight: impl Fn(usize) -> f64,
+        mut workspace: &'a mut [f32],
+        integers: &'a mut [u32],
+    ) -> Option<Self> {
         let lengths = Lengths::new(n)?;
         let twiddles = workspace.split_off_mut(..2 * n)?;
-        let order = workspace.split_off_mut(..n)?;
+        let order = integers.get_mut(..n)?;
         let turns = workspace.split_off_mut(..6 * (n / 2 + 1))?;
         let scratch = workspace.split_off_mut(..COLUMNS * n)?;
         let scratch = scratch.as_chunks_mut().0.as_chunks_mut().0.as_chunks_mut().0;
@@ -104,7 +109,7 @@ impl<'a> CosineTransform<'a> {
         let end = width.min(x + COLUMNS);
         for (y, row) in picture.data.chunks_mut(picture.stride.max(1)).take(n).enumerate() {
             let place = if y.is_multiple_of(2) { y / 2 } else { n - 1 - y / 2 };
-            let place = self.order.get(place).map_or(0, |place| place.to_bits());
+            let place = at(self.order, place);
             let (Some(slot), Some(row)) = (self.scratch.get(place as usize), row.get_mut(x..end)) else {
                 continue;
             };
@@ -126,7 +131,7 @@ impl<'a> CosineTransform<'a> {
         let first = self.order.first().into_iter();
         let pairs = first.clone().zip(first).chain(others.iter().zip(others.iter().rev()));
         for ((a, b), [cos, sin, other_cos, other_sin, ..]) in pairs.zip(turns.by_ref()) {
-            let (a, b) = (a.to_bits() as usize, b.to_bits() as usize);
+            let (a, b) = (*a as usize, *b as usize);
             let (Some(one), Some(two)) = (self.scratch.get(a), self.scratch.get(b)) else { continue };
             let (mut low, mut high) = (*one, *two);
             for (low, high) in low.iter_mut().zip(&mut high) {
@@ -168,9 +173,9 @@ impl<'a> CosineTransform<'a> {
         let stride = spectrum.stride.max(1);
         let data = spectrum.data.get_mut(x * stride..).unwrap_or_default();
         let mut rows = data.chunks_mut(stride).take(width.saturating_sub(x));
-        let value = |place: f32| self.scratch.get(place.to_bits() as usize).copied().unwrap_or_default();
+        let value = |place: u32| self.scratch.get(place as usize).copied().unwrap_or_default();
         for part in 0..COLUMNS / 4 {
-            let lanes = |place: f32| pick(&value(place), part);
+            let lanes = |place: u32| pick(&value(place), part);
             let four = [rows.next(), rows.next(), rows.next(), rows.next()];
             if let [Some(a), Some(b), Some(c), Some(d)] = four {
                 let [(a, ra), (b, rb), (c, rc), (d, rd)] =

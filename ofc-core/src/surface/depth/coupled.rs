@@ -9,13 +9,14 @@
 //! J. G. Harris, "A new approach to surface reconstruction: the coupled depth/slope model", ICCV 1987.
 
 use super::coarsen;
-use super::grid::Parts;
+use super::hierarchy::Parts;
 use super::input::SlopeRow;
+use super::job::{Answer, Job};
 use super::operator::{Fine, OnePlusMass, Packing, copy};
 use super::parameters::{DepthError, DepthResult};
-use super::poisson::{Answer, Job, pack};
 use super::solver::{Outcome, Stop, Work, solve};
 use super::sweep::{Buffers, dot};
+use super::word;
 use libm::sqrt;
 
 pub(super) fn integrate(mut job: Job) -> Answer {
@@ -27,11 +28,12 @@ pub(super) fn integrate(mut job: Job) -> Answer {
     let packing = OnePlusMass;
     let Parts { grid, fine, hierarchy, .. } = &mut job.parts;
     for y in 0..grid.height {
-        for (root, masked) in grid.row_mut(fine.weights, y).iter_mut().zip(job.input.masked(y)) {
-            *root = if masked { pack(1.0 + inverse * *root * *root) } else { 0.0 };
+        for (slot, masked) in grid.row_mut(fine.words, y).iter_mut().zip(job.input.masked(y)) {
+            let root = word::number(*slot);
+            *slot = if masked { word::word(1.0 + inverse * root * root) } else { 0 };
         }
     }
-    coarsen::build(*grid, fine.weights, packing, hierarchy)?;
+    coarsen::build(*grid, fine.words, packing, hierarchy)?;
     let first = job.smooth(Slope::Q)?;
     let Parts { grid, fine, .. } = &mut job.parts;
     for y in 0..grid.height {
@@ -41,8 +43,8 @@ pub(super) fn integrate(mut job: Job) -> Answer {
     let Parts { grid, fine, .. } = &mut job.parts;
     for y in 0..grid.height {
         copy(grid.row_mut(fine.correction, y), job.output.row(y));
-        for packed in grid.row_mut(fine.weights, y) {
-            *packed = packing.root(*packed);
+        for slot in grid.row_mut(fine.words, y) {
+            *slot = word::word(packing.root(*slot));
         }
     }
     let so_far = DepthResult {
@@ -77,13 +79,13 @@ impl Job<'_> {
             let row = grid.row_mut(fine.residual, y);
             let (p, q) = if which == Slope::P { (&mut *row, other) } else { (other, &mut *row) };
             let _ = self.input.read(y, params.min_n3 as f32, &mut SlopeRow { p, q, root });
-            for (right, &packed) in row.iter_mut().zip(grid.row(fine.weights, y)) {
+            for (right, &packed) in row.iter_mut().zip(grid.row(fine.words, y)) {
                 *right *= OnePlusMass.mass(packed);
             }
             squared += dot(row, row);
             self.output.row_mut(y).fill(0.0);
         }
-        let operator = Fine { grid: *grid, packed: fine.weights, packing: OnePlusMass };
+        let operator = Fine { grid: *grid, words: fine.words, packing: OnePlusMass };
         // Slopes are only a step on the way: their residual will do.
         let stop = Stop {
             residual: params.tolerance * sqrt(squared),

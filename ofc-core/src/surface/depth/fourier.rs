@@ -77,17 +77,17 @@ impl Lengths {
         }
     }
 
-    /// Writes where each frequency ends up, as bits.
-    pub fn fill_order(&self, order: &mut [f32]) {
+    /// Writes where each frequency ends up.
+    pub fn fill_order(&self, order: &mut [u32]) {
         let mut filled = 1;
         if let Some(first) = order.first_mut() {
-            *first = 0.0;
+            *first = 0;
         }
         for (radix, len) in self.stages() {
             for m in 1..radix {
                 let (done, rest) = order.split_at_mut_checked(m * filled).unwrap_or_default();
                 for (slot, before) in rest.iter_mut().zip(done).take(filled) {
-                    *slot = f32::from_bits(before.to_bits() + u32::try_from(m * (len / radix)).unwrap_or(0));
+                    *slot = *before + u32::try_from(m * (len / radix)).unwrap_or(0);
                 }
             }
             filled *= radix;

@@ -4,44 +4,12 @@
 //! Every equation reads `sum over neighbors j of w_ij (z_i - z_j) + mass_i z_i = right_i`.
 
 use super::grid::Grid;
-
-/// How a pixel takes part in the next coarser grid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Attachment {
-    /// It belongs to the block it lies in.
-    Own,
-    /// It is cut off from the rest of its block and from its neighbors' blocks.
-    None,
-    /// It belongs to the block beyond its horizontal edge out of the block.
-    Beside,
-    /// It belongs to the block beyond its vertical edge out of the block.
-    Across,
-}
-
-impl Attachment {
-    pub const fn bits(self) -> u32 {
-        match self {
-            Self::Own => 0,
-            Self::None => 1,
-            Self::Beside => 2,
-            Self::Across => 3,
-        }
-    }
-
-    const fn from_bits(bits: u32) -> Self {
-        match bits {
-            0 => Self::Own,
-            1 => Self::None,
-            2 => Self::Beside,
-            _ => Self::Across,
-        }
-    }
-}
+use super::word::{self, Attachment};
 
 /// `slice[i]`; the bound is known where it matters and the branch is optimized away.
 #[inline(always)]
-pub(super) fn at(slice: &[f32], i: usize) -> f32 {
-    slice.get(i).copied().unwrap_or(0.0)
+pub(super) fn at<T: Copy + Default>(slice: &[T], i: usize) -> T {
+    slice.get(i).copied().unwrap_or_default()
 }
 
 /// Copies as much as fits: no lengths to disagree about.
@@ -143,27 +111,27 @@ pub(super) trait Operator {
     }
 }
 
-/// How one number a pixel holds both the root of its weight and its mass.
+/// How one word a pixel holds both the root of its weight and its mass.
 pub(super) trait Packing: Copy {
-    fn root(self, packed: f32) -> f32;
-    fn mass(self, packed: f32) -> f32;
+    fn root(self, word: u32) -> f32;
+    fn mass(self, word: u32) -> f32;
 }
 
-/// The number is the root weight; its sign says whether the pixel has the one mass there is.
+/// The number is the root weight, and pixels of known depth have the one mass there is.
 #[derive(Clone, Copy)]
-pub(super) struct Signed {
+pub(super) struct Anchored {
     pub mass: f32,
 }
 
-impl Packing for Signed {
+impl Packing for Anchored {
     #[inline(always)]
-    fn root(self, packed: f32) -> f32 {
-        packed.abs()
+    fn root(self, word: u32) -> f32 {
+        word::number(word)
     }
 
     #[inline(always)]
-    fn mass(self, packed: f32) -> f32 {
-        if packed < 0.0 { self.mass } else { 0.0 }
+    fn mass(self, word: u32) -> f32 {
+        if word::is_known(word) { self.mass } else { 0.0 }
     }
 }
 
@@ -173,13 +141,14 @@ pub(super) struct OnePlusMass;
 
 impl Packing for OnePlusMass {
     #[inline(always)]
-    fn root(self, packed: f32) -> f32 {
-        if packed < 1.0 { packed } else { 1.0 }
+    fn root(self, word: u32) -> f32 {
+        let number = word::number(word);
+        if number < 1.0 { number } else { 1.0 }
     }
 
     #[inline(always)]
-    fn mass(self, packed: f32) -> f32 {
-        packed - self.root(packed)
+    fn mass(self, word: u32) -> f32 {
+        word::number(word) - self.root(word)
     }
 }
 
@@ -188,14 +157,14 @@ impl Packing for OnePlusMass {
 #[derive(Clone, Copy)]
 pub(super) struct Fine<'a, P> {
     pub grid: Grid,
-    pub packed: &'a [f32],
+    pub words: &'a [u32],
     pub packing: P,
 }
 
 /// A row of [`Fine`].
 pub(super) struct FineRow<'a, P> {
-    center: &'a [f32],
-    neighbors: [&'a [f32]; 4],
+    center: &'a [u32],
+    neighbors: [&'a [u32]; 4],
     packing: P,
 }
 
@@ -222,7 +191,7 @@ impl<P: Packing> Operator for Fine<'_, P> {
     #[inline(always)]
     fn row(&self, start: usize, n: usize) -> Option<FineRow<'_, P>> {
         let stride = self.grid.stride();
-        let cut = |from: usize| self.packed.get(from..from + n);
+        let cut = |from: usize| self.words.get(from..from + n);
         Some(FineRow {
             center: cut(start)?,
             neighbors: [cut(start - 1)?, cut(start + 1)?, cut(start - stride)?, cut(start + stride)?],
@@ -232,24 +201,23 @@ impl<P: Packing> Operator for Fine<'_, P> {
 
     #[inline(always)]
     fn east(&self, index: usize) -> f32 {
-        self.packing.root(at(self.packed, index)) * self.packing.root(at(self.packed, index + 1))
+        self.packing.root(at(self.words, index)) * self.packing.root(at(self.words, index + 1))
     }
 
     #[inline(always)]
     fn south(&self, index: usize) -> f32 {
-        let below = at(self.packed, index + self.grid.stride());
-        self.packing.root(at(self.packed, index)) * self.packing.root(below)
+        let below = at(self.words, index + self.grid.stride());
+        self.packing.root(at(self.words, index)) * self.packing.root(below)
     }
 
     #[inline(always)]
     fn mass(&self, index: usize) -> f32 {
-        self.packing.mass(at(self.packed, index))
+        self.packing.mass(at(self.words, index))
     }
 
-    /// The two lowest bits of the number: they change a weight by less than its rounding.
     #[inline(always)]
     fn attachment(&self, index: usize) -> Attachment {
-        Attachment::from_bits(at(self.packed, index).to_bits() & 3)
+        word::attachment(at(self.words, index))
     }
 
     fn grid(&self) -> Grid {
@@ -321,8 +289,8 @@ impl Operator for Coarse<'_> {
 
     #[inline(always)]
     fn attachment(&self, index: usize) -> Attachment {
-        let bits = at(self.east, index).to_bits() >> 31 | at(self.south, index).to_bits() >> 31 << 1;
-        Attachment::from_bits(bits)
+        let flag = |array: &[f32], bit: u32| u32::from(at(array, index).is_sign_negative()) << bit;
+        Attachment::from_bits(flag(self.east, 0) | flag(self.south, 1))
     }
 
     fn grid(&self) -> Grid {
@@ -331,9 +299,9 @@ impl Operator for Coarse<'_> {
 }
 
 /// Sets the attachment of a pixel of the finest grid.
-pub(super) fn attach_fine(packed: &mut [f32], index: usize, attachment: Attachment) {
-    if let Some(value) = packed.get_mut(index) {
-        *value = f32::from_bits(value.to_bits() & !3 | attachment.bits());
+pub(super) fn attach_fine(words: &mut [u32], index: usize, attachment: Attachment) {
+    if let Some(word) = words.get_mut(index) {
+        *word = word::attached(*word, attachment);
     }
 }
 

@@ -1,5 +1,6 @@
 //! How to integrate, what comes out beside the depth, and why nothing does.
 
+use crate::math::arena::Need;
 use core::fmt;
 
 /// The largest number of pixels that can be integrated, 2^29 - 1.
@@ -92,8 +93,8 @@ pub enum DepthError {
     Size,
     /// A parameter is outside its range.
     Parameter,
-    /// The workspace is shorter than this.
-    Workspace(usize),
+    /// The workspace holds less than this.
+    Workspace(Need),
     /// The depth buffer ends before the last row does, or its row stride is smaller than a row.
     Output,
     /// No pixel of the mask is usable.
@@ -107,7 +108,7 @@ impl fmt::Display for DepthError {
                 f.write_str("planes of different sizes or the wrong number of channels, or too large")
             }
             Self::Parameter => f.write_str("a parameter is out of its range"),
-            Self::Workspace(need) => write!(f, "the workspace is shorter than {need}"),
+            Self::Workspace(need) => write!(f, "the workspace holds less than {} bytes", need.bytes()),
             Self::Output => {
                 f.write_str("the depth buffer ends before the last row, or its rows are too short")
             }

@@ -1,37 +1,14 @@
-//! Least squares over the usable pixels, and the last step of the other methods: slopes in, depth out.
+//! Least squares over the usable pixels, or, which is the paper's own choice, over the whole rectangle, flat at outliers.
+//!
+//! # Reference
+//! Section 5: "p and q were set to zero" where pixels do not obey the model.
 
-use super::grid::Parts;
-use super::input::DepthInput;
-use super::input::SlopeRow;
-use super::operator::{Fine, Packing, Signed};
-use super::parameters::{DepthError, DepthParams, DepthResult, Method};
-use super::regions::{Regions, Runs, Total, sum};
-use super::right_side::Size;
-use super::solver::{Outcome, Output, Stop, Work, solve};
-use super::sweep::Buffers;
-use super::trend::Trend;
-use super::{coarsen, right_side};
-use libm::sqrt;
+use super::hierarchy::Parts;
+use super::job::{Answer, Job};
+use super::parameters::{DepthError, DepthResult, Method};
+use super::word::ONE;
 
-/// Everything a method works with.
-pub(super) struct Job<'a> {
-    pub input: &'a DepthInput<'a>,
-    pub params: &'a DepthParams,
-    pub parts: Parts<'a>,
-    pub output: Output<'a>,
-}
-
-/// The inner `None` of a method: an array is not as long as it should be, which does not happen.
-pub(super) type Answer = Option<Result<DepthResult, DepthError>>;
-
-/// Depths of the prior beyond this many pixels are taken for unknown.
-const MAX_PRIOR: f64 = 1e9;
-
-/// The two lowest bits are the attachment's.
-pub(super) fn pack(value: f32) -> f32 {
-    f32::from_bits(value.to_bits() & !3)
-}
-
+/// Solves [`Method::Poisson`] and [`Method::Paper`].
 pub(super) fn integrate(mut job: Job) -> Answer {
     if let Some(along) = job.rectangle_along()
         && let Some(right) = job.read_rectangle()
@@ -42,189 +19,14 @@ pub(super) fn integrate(mut job: Job) -> Answer {
     if usable == 0 {
         return Some(Err(DepthError::Empty));
     }
-    job.depth(DepthResult { pixels: usable, excluded: masked - usable, ..DepthResult::default() }, true)
-}
-
-impl Job<'_> {
-    /// Reads p into the correction, q into the direction and root weights. Returns the pixels of the mask and the
-    /// usable ones.
-    pub fn read(&mut self) -> [usize; 2] {
-        let Parts { grid, fine, .. } = &mut self.parts;
-        let min_n3 = self.params.min_n3 as f32;
-        let mut counts = [0, 0];
+    let mut pixels = usable;
+    if job.params.method == Method::Paper {
+        // Slopes of unusable pixels are zero already.
+        let Parts { grid, fine, .. } = &mut job.parts;
         for y in 0..grid.height {
-            let mut row = SlopeRow {
-                p: grid.row_mut(fine.correction, y),
-                q: grid.row_mut(fine.direction, y),
-                root: grid.row_mut(fine.weights, y),
-            };
-            let row_counts = self.input.read(y, min_n3, &mut row);
-            for root in row.root {
-                *root = pack(*root);
-            }
-            for (sum, count) in counts.iter_mut().zip(row_counts) {
-                *sum += count;
-            }
+            grid.row_mut(fine.words, y).fill(ONE);
         }
-        counts
+        pixels = masked;
     }
-
-    /// Integrates the slopes in the correction (p) and the direction (q). `so_far` is the result to complete,
-    /// `converged` says whether all went well until now.
-    #[inline(never)]
-    pub fn depth(mut self, so_far: DepthResult, converged: bool) -> Answer {
-        let params = self.params;
-        let packing = Signed { mass: params.prior_weight as f32 };
-        let anchored = params.prior_weight > 0.0 && self.input.prior.is_some();
-        if anchored {
-            self.mark_prior();
-        }
-        let Parts { grid, fine, hierarchy, buffers } = &mut self.parts;
-        coarsen::build(*grid, fine.weights, packing, hierarchy)?;
-        let trend = Trend::fit(grid, fine.weights, fine.correction, fine.direction);
-        let mut buffers = Buffers::new(buffers);
-        let operator = Fine { grid: *grid, packed: fine.weights, packing };
-        let [whole, energies, ..] = buffers.cut(grid.width);
-        let mut size = right_side::fill(
-            &operator,
-            hierarchy.spans,
-            &trend,
-            fine.correction,
-            fine.direction,
-            fine.residual,
-            [whole, energies],
-        );
-        if anchored {
-            let prior = Prior { input: self.input, params, trend: &trend };
-            prior.add(&operator, fine.residual, &mut size);
-        }
-        let norm = sqrt(size.squared);
-        for y in 0..grid.height {
-            self.output.row_mut(y).fill(0.0);
-        }
-        let work =
-            Work { residual: fine.residual, correction: fine.correction, direction: Some(fine.direction) };
-        let stop = Stop {
-            residual: params.tolerance * norm,
-            energy: size.energy,
-            equations: 2.0 * so_far.pixels as f64,
-            cycles: params.max_cycles,
-        };
-        let Outcome { cycles, residual } =
-            solve(&operator, hierarchy, work, &mut self.output, &mut buffers, stop)?;
-        let regions = self.finish(&trend);
-        Some(Ok(DepthResult {
-            converged: converged && residual <= stop.residual,
-            cycles: so_far.cycles + cycles,
-            residual: if norm > 0.0 { residual / norm } else { 0.0 },
-            regions,
-            ..so_far
-        }))
-    }
-
-    /// The sign of a root weight says that the prior knows the pixel's depth.
-    fn mark_prior(&mut self) {
-        let Parts { grid, fine, .. } = &mut self.parts;
-        let Some(prior) = self.input.prior else { return };
-        for y in 0..grid.height {
-            for (root, &prior) in grid.row_mut(fine.weights, y).iter_mut().zip(prior.row(y)) {
-                if *root > 0.0 && (f64::from(prior) / self.params.pixel_pitch).abs() <= MAX_PRIOR {
-                    *root = -*root;
-                }
-            }
-        }
-    }
-
-    /// Puts the trend back, frees every region of its mean, scales, and marks what has no depth. Returns the number of
-    /// regions.
-    #[inline(never)]
-    fn finish(&mut self, trend: &Trend) -> usize {
-        let Parts { grid, fine, .. } = &mut self.parts;
-        let output = &mut self.output;
-        let weights: &[f32] = fine.weights;
-        let mut regions = Regions {
-            grid: *grid,
-            parents: fine.correction,
-            sums: fine.direction,
-            rests: fine.residual,
-            count: 0,
-        };
-        // The paper's rectangle is the only one with pixels of weight outside the mask.
-        let mask = if self.params.method == Method::Paper { self.input.mask } else { None };
-        let anchored = self.params.prior_weight > 0.0 && self.input.prior.is_some();
-        for y in 0..grid.height {
-            let [constant, linear, square] = trend.depth(y);
-            let row = output.row_mut(y);
-            for (x, z) in (0_i32..).zip(row.iter_mut()) {
-                let x = f64::from(x);
-                *z = (f64::from(*z) + (constant + x * (linear + x * square))) as f32;
-            }
-            let (row, weights_row) = (&*row, grid.row(weights, y));
-            regions.add_row(y, weights, |[from, to]| {
-                let run = row.get(from..to).unwrap_or_default();
-                let anchored = anchored
-                    && weights_row.get(from..to).unwrap_or_default().iter().any(|&weight| weight < 0.0);
-                let Some(mask) = mask else { return Total { count: to - from, sum: sum(run), anchored } };
-                let mut total = Total { anchored, ..Total::default() };
-                for (&z, _) in run.iter().zip(mask.row(y).iter().skip(from)).filter(|&(_, &m)| m != 0) {
-                    total.count += 1;
-                    total.sum += f64::from(z);
-                }
-                total
-            });
-        }
-        let pitch = self.params.pixel_pitch;
-        for y in 0..grid.height {
-            let row = output.row_mut(y);
-            let mut done = 0;
-            for [from, to] in Runs::new(grid.row(weights, y)) {
-                row.get_mut(done..from).unwrap_or_default().fill(NO_DEPTH);
-                let offset = regions.offset(from, y);
-                for z in row.get_mut(from..to).unwrap_or_default() {
-                    *z = ((f64::from(*z) - offset) * pitch) as f32;
-                }
-                done = to;
-            }
-            row.get_mut(done..).unwrap_or_default().fill(NO_DEPTH);
-            if let Some(mask) = mask {
-                for (z, _) in row.iter_mut().zip(mask.row(y)).filter(|&(_, &m)| m == 0) {
-                    *z = NO_DEPTH;
-                }
-            }
-        }
-        regions.count
-    }
-}
-
-/// The one NaN that is ever written.
-pub(super) const NO_DEPTH: f32 = f32::from_bits(0x7fc0_0000);
-
-/// Known depths on their way into the equations.
-struct Prior<'a> {
-    input: &'a DepthInput<'a>,
-    params: &'a DepthParams,
-    trend: &'a Trend,
-}
-
-impl Prior<'_> {
-    /// Adds the known depths, less the trend, to the right side.
-    fn add(&self, operator: &Fine<Signed>, right: &mut [f32], size: &mut Size) {
-        let Some(prior) = self.input.prior else { return };
-        let grid = operator.grid;
-        for y in 0..grid.height {
-            let [constant, linear, square] = self.trend.depth(y);
-            let packed = grid.row(operator.packed, y);
-            let row = grid.row_mut(right, y).iter_mut().zip(packed).zip(prior.row(y));
-            for (x, ((right, &packed), &prior)) in (0_u32..).zip(row) {
-                let mass = f64::from(operator.packing.mass(packed));
-                if mass > 0.0 {
-                    let (x, depth) = (f64::from(x), f64::from(prior) / self.params.pixel_pitch);
-                    let rest = depth - (constant + x * (linear + x * square));
-                    *right += (mass * rest) as f32;
-                    size.squared += (mass * depth) * (mass * depth);
-                    size.energy += mass * rest * rest;
-                }
-            }
-        }
-    }
+    job.depth(DepthResult { pixels, excluded: masked - usable, ..DepthResult::default() }, true)
 }

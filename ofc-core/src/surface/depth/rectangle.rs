@@ -6,10 +6,11 @@
 
 use super::cosine_transform::{CosineTransform, Rows};
 use super::fourier::Lengths;
-use super::grid::{FineArrays, Grid, Parts};
+use super::grid::Grid;
+use super::hierarchy::{FineArrays, Parts};
 use super::input::SlopeRow;
+use super::job::{Answer, Job, NO_DEPTH};
 use super::parameters::{DepthError, DepthResult, Method};
-use super::poisson::{Answer, Job, NO_DEPTH};
 use super::sweep::{Buffers, dot};
 use super::trend::{Fit, Trend};
 use super::tridiagonal;
@@ -58,7 +59,7 @@ impl Job<'_> {
         let min_n3 = self.params.min_n3 as f32;
         let mut buffers = Buffers::new(buffers);
         let [p, before, current, next] = buffers.cut(grid.width);
-        let root = grid.row_mut(fine.weights, 0);
+        let root = grid.row_mut(fine.direction, 0);
         // In the paper's rectangle everybody has weight one, and slopes of unusable pixels are zero already.
         let all = self.params.method == Method::Paper;
         let mut read = |y: usize, p: &mut [f32], q: &mut [f32]| {
@@ -182,7 +183,8 @@ struct Remainder {
 
 /// Whether all numbers are one.
 fn is_one(row: &[f32]) -> bool {
-    row.iter().fold(0, |others, weight| others | (weight.to_bits() ^ 1.0_f32.to_bits())) == 0
+    // Without a way out of the loop, so that many are compared at once.
+    row.iter().fold(true, |all, &weight| all & (weight == 1.0))
 }
 
 /// The rise of the edge to the left of each pixel less that of the edge to its right: half the difference of its
@@ -241,22 +243,23 @@ fn solve(grid: &Grid, along: Along, fine: &mut FineArrays, workspace: &mut [f32]
     };
     // What the equations of a frequency leave out, and what the cosine transforms do.
     let weight = |k| if k == 0 { 1.0 } else { 1.0 - tridiagonal::gap(k, n) } / n as f64;
-    let mut transform = CosineTransform::new(n, weight, workspace)?;
+    let mut transform = CosineTransform::new(n, weight, workspace, fine.words)?;
     let right = Rows { data: fine.residual.get(inner..)?, stride };
-    let mut depth = Rows { data: fine.direction.get_mut(inner..)?, stride };
-    let mut spectrum = Rows { data: &mut *fine.correction, stride: n + 1 };
-    let mut turned = Rows { data: &mut *fine.weights, stride: width };
     if along == Along::Columns {
+        let mut spectrum = Rows { data: &mut *fine.correction, stride: n + 1 };
         transform.forward(&right, width, &mut spectrum);
-    } else {
-        turn(&right, [n, width], &mut turned);
-        transform.forward(&turned.view(), width, &mut spectrum);
-    }
-    tridiagonal::solve(&mut spectrum, width, n);
-    if along == Along::Columns {
+        tridiagonal::solve(&mut spectrum, width, n);
+        let mut depth = Rows { data: fine.direction.get_mut(inner..)?, stride };
         transform.backward(&spectrum.view(), width, &mut depth);
     } else {
+        let mut turned = Rows { data: &mut *fine.correction, stride: width };
+        turn(&right, [n, width], &mut turned);
+        let mut spectrum = Rows { data: &mut *fine.direction, stride: n + 1 };
+        transform.forward(&turned.view(), width, &mut spectrum);
+        tridiagonal::solve(&mut spectrum, width, n);
         transform.backward(&spectrum.view(), width, &mut turned);
+        // The spectrum is done with: its array takes the depth.
+        let mut depth = Rows { data: fine.direction.get_mut(inner..)?, stride };
         turn(&turned.view(), [width, n], &mut depth);
     }
     Some(())

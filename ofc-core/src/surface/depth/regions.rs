@@ -3,8 +3,8 @@
 use super::grid::Grid;
 use super::operator::at;
 
-/// A parent's index, or, in a root, the number of pixels behind this bit. Neither can look like a NaN, because
-/// pictures have fewer than 2^29 pixels: moving the bits about as a float is safe on every machine.
+/// Set in a root, whose lowest bits are the number of its pixels; a word without it is a parent's index. Both fit, because
+/// pictures have fewer than 2^29 pixels, and neither is zero.
 const ROOT: u32 = 1 << 31;
 
 /// Set in a root whose region holds a pixel of known depth.
@@ -13,41 +13,23 @@ const ANCHORED: u32 = 1 << 29;
 /// Pixels of one row without a gap: the first and the one behind the last.
 pub(super) type Run = [usize; 2];
 
-/// The runs of a row: pixels that are not zero.
-#[derive(Clone)]
-pub(super) struct Runs<'a> {
-    row: &'a [f32],
-    end: usize,
+/// The first run of a row that begins at `start` or behind: pixels whose word is not zero.
+pub(super) fn next_run(row: &[u32], start: usize) -> Option<Run> {
+    let rest = row.get(start..)?;
+    let gap = rest.iter().position(|&word| word != 0)?;
+    let rest = rest.get(gap..)?;
+    let len = rest.iter().position(|&word| word == 0).unwrap_or(rest.len());
+    Some([start + gap, start + gap + len])
 }
 
-impl<'a> Runs<'a> {
-    pub const fn new(row: &'a [f32]) -> Self {
-        Self { row, end: 0 }
-    }
-}
-
-impl Iterator for Runs<'_> {
-    type Item = Run;
-
-    fn next(&mut self) -> Option<Run> {
-        let rest = self.row.get(self.end..)?;
-        let gap = rest.iter().position(|&v| v != 0.0)?;
-        let rest = rest.get(gap..)?;
-        let len = rest.iter().position(|&v| v == 0.0).unwrap_or(rest.len());
-        let start = self.end + gap;
-        self.end = start + len;
-        Some([start, self.end])
-    }
-}
-
-/// Regions in the making: three arrays in grid layout, of which only the first pixels of runs are used.
+/// Regions in the making: arrays in grid layout, of which only the first pixels of runs are used.
 pub(super) struct Regions<'a> {
     pub grid: Grid,
-    /// Indices of parents, or counts of roots, as bits.
-    pub parents: &'a mut [f32],
-    /// Sums of depths of roots, the large part.
+    /// The words of pixels; the first one of a run that has been added is an index of a parent, or a root's count.
+    pub words: &'a mut [u32],
+    /// Sums of depths of roots, rounded.
     pub sums: &'a mut [f32],
-    /// What the large part rounds away.
+    /// What the rounding took off the sums: both together are as good as f64.
     pub rests: &'a mut [f32],
     /// How many there are so far.
     pub count: usize,
@@ -64,12 +46,12 @@ pub(super) struct Total {
 
 impl Regions<'_> {
     fn bits(&self, index: usize) -> u32 {
-        at(self.parents, index).to_bits()
+        at(self.words, index)
     }
 
     fn set_bits(&mut self, index: usize, bits: u32) {
-        if let Some(slot) = self.parents.get_mut(index) {
-            *slot = f32::from_bits(bits);
+        if let Some(slot) = self.words.get_mut(index) {
+            *slot = bits;
         }
     }
 
@@ -117,15 +99,17 @@ impl Regions<'_> {
         self.count -= 1;
     }
 
-    /// Takes in row `y` of `inside`, each run with what `total` says of it.
-    pub fn add_row(&mut self, y: usize, inside: &[f32], total: impl Fn(Run) -> Total) {
+    /// Takes in row `y`, each run with what `total` says of it and of its words.
+    pub fn add_row(&mut self, y: usize, total: impl Fn(Run, &[u32]) -> Total) {
         let grid = self.grid;
         let (start, start_above) = (grid.start(y), grid.start(y) - grid.stride());
-        let mut above_runs = Runs::new(grid.row_above(inside, y));
-        let mut above = above_runs.next();
-        for run in Runs::new(grid.row(inside, y)) {
+        let mut above = next_run(grid.row_above(self.words, y), 0);
+        let mut end = 0;
+        while let Some(run) = next_run(grid.row(self.words, y), end) {
             let [from, to] = run;
-            let Total { count, sum, anchored } = total(run);
+            end = to;
+            let words = grid.row(self.words, y).get(from..to).unwrap_or_default();
+            let Total { count, sum, anchored } = total(run, words);
             let anchored = if anchored { ANCHORED } else { 0 };
             self.set_bits(start + from, ROOT | anchored | u32::try_from(count).unwrap_or(0));
             self.set_sum(start + from, sum);
@@ -140,7 +124,7 @@ impl Regions<'_> {
                 if above_to > to {
                     break;
                 }
-                above = above_runs.next();
+                above = next_run(grid.row_above(self.words, y), above_to);
             }
         }
     }

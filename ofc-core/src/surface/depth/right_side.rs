@@ -3,9 +3,9 @@
 //! Between two neighboring pixels the depth should differ by the mean of their slopes. Least squares over these
 //! equations, an edge each, has the normal equations `sum of w_ij (z_i - z_j) = sum of w_ij g_ij`.
 
-use super::grid::Span;
 use super::operator::{Coefficients, Operator, Unit, at};
 use super::regions::sum;
+use super::span::{Span, StoredSpan};
 use super::sweep::dot;
 use super::trend::Trend;
 
@@ -36,7 +36,7 @@ pub(super) struct Size {
 #[inline(never)]
 pub(super) fn fill<O: Operator>(
     operator: &O,
-    spans: &[f32],
+    spans: &[StoredSpan],
     trend: &Trend,
     p: &mut [f32],
     q: &mut [f32],

@@ -10,8 +10,10 @@
 //! Linear Systems", 2nd ed., algorithm 9.1.
 
 use super::coarsen::equations;
-use super::grid::{Grid, Hierarchy, Span};
+use super::grid::Grid;
+use super::hierarchy::Hierarchy;
 use super::operator::{Operator, copy};
+use super::span::{Span, StoredSpan};
 use super::sweep::{self, Buffers, dot, map_row, rows_at};
 use libm::sqrt;
 
@@ -117,7 +119,7 @@ fn cycle<O: Operator>(
 #[inline(never)]
 fn turn<O: Operator>(
     operator: &O,
-    spans: &[f32],
+    spans: &[StoredSpan],
     factor: f32,
     direction: &mut [f32],
     correction: &mut [f32],
@@ -195,7 +197,7 @@ pub(super) fn solve<O: Operator>(
 }
 
 /// The squared 2-norm of an array over its grid.
-fn norm_squared(grid: &Grid, spans: &[f32], array: &[f32]) -> f64 {
+fn norm_squared(grid: &Grid, spans: &[StoredSpan], array: &[f32]) -> f64 {
     let rows = (0..grid.height).map(|y| Span::load(spans, y, grid.width).cut(grid.row(array, y)));
     rows.map(|row| dot(row, row)).sum()
 }
@@ -204,7 +206,7 @@ fn norm_squared(grid: &Grid, spans: &[f32], array: &[f32]) -> f64 {
 #[inline(never)]
 fn advance(
     grid: &Grid,
-    spans: &[f32],
+    spans: &[StoredSpan],
     step: f32,
     direction: &[f32],
     applied: &[f32],
@@ -228,7 +230,7 @@ fn advance(
 }
 
 /// The product of `array` and `A array`.
-fn energy<O: Operator>(operator: &O, spans: &[f32], array: &[f32], buffers: &mut Buffers) -> f64 {
+fn energy<O: Operator>(operator: &O, spans: &[StoredSpan], array: &[f32], buffers: &mut Buffers) -> f64 {
     let grid = operator.grid();
     let [applied, ..] = buffers.cut(grid.width);
     let mut product = 0.0;
@@ -243,7 +245,7 @@ fn energy<O: Operator>(operator: &O, spans: &[f32], array: &[f32], buffers: &mut
 /// Does what [`advance`] does, without an array that holds `A direction`.
 fn advance_directly<O: Operator>(
     operator: &O,
-    spans: &[f32],
+    spans: &[StoredSpan],
     step: f32,
     direction: &[f32],
     residual: &mut [f32],

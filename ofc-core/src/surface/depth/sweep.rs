@@ -1,8 +1,9 @@
 //! Passes over one grid, several steps deep: while one row is smoothed for the first time, the row above it is
 //! smoothed for the second and the residual of the one above that goes to the coarser grid, all from cache.
 
-use super::grid::{Grid, Span};
+use super::grid::Grid;
 use super::operator::{Coefficients, Operator, Unit, at, copy};
+use super::span::{Span, StoredSpan};
 use super::transfer;
 
 /// The two steps of a Jacobi iteration that damps everything between a sixth and all of the spectrum most evenly:
@@ -156,7 +157,7 @@ fn smooth_row<O: Operator>(
 #[inline(never)]
 pub(super) fn descend<O: Operator>(
     operator: &O,
-    spans: &[f32],
+    spans: &[StoredSpan],
     right: &[f32],
     correction: &mut [f32],
     coarse: &mut [f32],
@@ -191,7 +192,7 @@ pub(super) fn descend<O: Operator>(
 #[inline(never)]
 pub(super) fn ascend<O: Operator>(
     operator: &O,
-    spans: &[f32],
+    spans: &[StoredSpan],
     right: &[f32],
     correction: &mut [f32],
     coarse: &[f32],

@@ -8,8 +8,10 @@
 //! M. Khalil, P. Wesseling, "Vertex-centered and cell-centered multigrid for interface problems", J. Comput. Phys.
 //! 98 (1992); D. Y. Kwak, "V-cycle multigrid for cell-centered finite differences", SIAM J. Sci. Comput. 21 (1999).
 
-use super::grid::{Grid, Span};
-use super::operator::{Attachment, Operator, at};
+use super::grid::Grid;
+use super::operator::{Operator, at};
+use super::span::Span;
+use super::word::Attachment;
 
 /// Shares of a pixel's own block, of the block beside it and of the block across.
 type Shares = [f32; 3];

@@ -67,13 +67,13 @@ impl Fit {
 }
 
 impl Trend {
-    /// Fits the slopes `p`, `q` (in grid layout) of pixels whose weight `packed` is not zero.
+    /// Fits the slopes `p`, `q` (in grid layout) of pixels whose word is not zero.
     #[inline(never)]
-    pub fn fit(grid: &Grid, packed: &[f32], p: &[f32], q: &[f32]) -> Self {
+    pub fn fit(grid: &Grid, words: &[u32], p: &[f32], q: &[f32]) -> Self {
         let mut fit = Fit::new(grid);
         for y in Fit::rows(grid) {
-            let weights = grid.row(packed, y);
-            fit.add(y, |x| at(weights, x) != 0.0, grid.row(p, y), grid.row(q, y));
+            let weights = grid.row(words, y);
+            fit.add(y, |x| at(weights, x) != 0, grid.row(p, y), grid.row(q, y));
         }
         fit.trend()
     }
