@@ -8,6 +8,7 @@ use ofc_core::render::DepthMap;
 use ofc_core::solve::{self, Solution};
 use ofc_core::surface::depth::{self, DepthInput, DepthParams, Plane, Slopes};
 use ofc_core::surface::normals::{self, Length};
+use ofc_tests::depth_workspace::Workspace;
 use ofc_tests::shaded_scenes::{CLEAN, Light, Matrix, OTHER, Scene, cap, lopsided};
 
 const SIZE: usize = 160;
@@ -38,10 +39,10 @@ fn checked(scene: &Scene, solution: &Solution, f: Matrix) -> Check {
         weights: None,
         prior: None,
     };
-    let mut workspace = vec![0.0; depth::workspace_len(SIZE, SIZE).unwrap()];
+    let mut workspace = Workspace::new(SIZE, SIZE, 0.0);
     let mut depths = vec![0.0_f32; SIZE * SIZE];
     let params = DepthParams::default();
-    let integrated = depth::integrate(&input, &params, &mut workspace, &mut depths, SIZE);
+    let integrated = depth::integrate(&input, &params, workspace.arena(), &mut depths, SIZE);
     let bytes: Vec<u8> = depths.iter().flat_map(|z| z.to_ne_bytes()).collect();
     let surface = DepthMap::new(&bytes, SIZE, SIZE, 4 * SIZE, 1.0).unwrap();
     let mut workspace = vec![f32::NAN; workspace_len(SIZE * SIZE)];
