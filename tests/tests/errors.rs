@@ -5,6 +5,7 @@ use ofc_core::color::ellipsoid::NotPositiveDefinite;
 use ofc_core::color::lmeds::FitError;
 use ofc_core::color::rank::patches::Refused;
 use ofc_core::color::segment::SegmentError;
+use ofc_core::math::arena::Need;
 use ofc_core::orientation::orthogonal::OrthogonalError;
 use ofc_core::picture::ImageError;
 use ofc_core::picture::flat_field::FlatFieldError;
@@ -67,7 +68,7 @@ fn every_error_says_what_is_wrong() {
         Box::new(StreamError::Fit(FitError::Dark)),
         Box::new(DepthError::Size),
         Box::new(DepthError::Parameter),
-        Box::new(DepthError::Workspace(7)),
+        Box::new(DepthError::Workspace(Need::of_singles(7))),
         Box::new(DepthError::Output),
         Box::new(DepthError::Empty),
         Box::new(TooShort),
@@ -80,7 +81,10 @@ fn every_error_says_what_is_wrong() {
     }
     assert_eq!(FitError::Dark.to_string(), "fewer than 12 usable pixels: most are black");
     assert_eq!(StreamError::Fit(FitError::Dark).to_string(), FitError::Dark.to_string());
-    assert_eq!(DepthError::Workspace(7).to_string(), "the workspace is shorter than 7");
+    assert_eq!(
+        DepthError::Workspace(Need::of_singles(7)).to_string(),
+        "the workspace holds less than 28 bytes"
+    );
 }
 
 /// Public types that functions return as errors and that do not implement `Error` in their own file.

@@ -407,7 +407,7 @@ impl<P: Packing> Fine<'_, P> {
 fn are_all<T: Copy + PartialEq>(array: &[T], index: usize, value: T) -> bool {
     let numbers = array.get(index - 1..).and_then(|rest| rest.first_chunk::<{ TOGETHER + 2 }>());
     // Without a way out of the loop, so that all are compared at once.
-    numbers.is_some_and(|numbers| numbers.iter().fold(true, |all, number| all & (*number == value)))
+    numbers.is_some_and(|numbers| numbers.iter().filter(|&&number| number != value).count() == 0)
 }
 
 impl Coarse<'_> {

@@ -184,7 +184,7 @@ struct Remainder {
 /// Whether all numbers are one.
 fn is_one(row: &[f32]) -> bool {
     // Without a way out of the loop, so that many are compared at once.
-    row.iter().fold(true, |all, &weight| all & (weight == 1.0))
+    row.iter().filter(|&&weight| weight != 1.0).count() == 0
 }
 
 /// The rise of the edge to the left of each pixel less that of the edge to its right: half the difference of its
