@@ -10,7 +10,7 @@
 //! | 7 | normals | [`normals`](crate::surface::normals) |
 //! | 8 | of several solutions the most integrable one | `direct`, [`integrability`](crate::orientation::integrability) |
 //!
-//! With [`OrientationMethod::Joint`] the transformation that [`joint`](crate::orientation::joint) finds takes the place of
+//! With [`OrientationMethod::Joint`] the transformation that [`joint`](mod@crate::orientation::joint) finds takes the place of
 //! steps 3 to 8.
 
 mod choice;

@@ -2,7 +2,7 @@
 //!
 //! A cold start takes two or three passes over a frame, or over consecutive frames of a scene at rest. The pass over its
 //! colors keeps a stratified sample, and ends with the model: everything that medians and fits are for is computed on the
-//! sample. The pass over its tilts sums the differences between neighbouring inliers, of this row and the one before it,
+//! sample. The pass over its tilts sums the differences between neighboring inliers, of this row and the one before it,
 //! and ends with F where there is one candidate for the slants. Where there are several, a pass over the slants sums the
 //! integral (15) of all of them at once, and ends with F. With the joint method ([`OrientationMethod::Joint`](crate::solve::OrientationMethod::Joint)) two passes take their
 //! place: one sums the moments of the normals over cells, four rows at a time, for what outward normals say, and one over

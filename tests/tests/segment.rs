@@ -122,7 +122,7 @@ fn the_block_of_the_original_suffices_without_noise() {
     let (labels, regions) = run(&scene.image(), &params);
     let scores = scores(&labels, &truth, 2);
     println!("spacing 1, no refits: {} regions, {scores:.3?}", regions.len());
-    // Six neighbours in f32 are known to one part in 10^7 and C through them to some percent: most of each sphere.
+    // Six neighbors in f32 are known to one part in 10^7 and C through them to some percent: most of each sphere.
     assert!(scores.iter().all(|&(_, inside, elsewhere)| inside > 0.88 && elsewhere < 0.01));
     assert!(regions.iter().all(|region| region.spacing == 1));
 }

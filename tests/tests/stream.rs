@@ -214,7 +214,7 @@ fn degenerate_scenes_are_refused_like_pictures() {
         outcomes.contains(&Outcome::RankDeficient) && !outcomes.contains(&Outcome::Solved),
         "{outcomes:?}"
     );
-    // Few enough colors to fit anything: the noise is that of neighbours, in a row.
+    // Few enough colors to fit anything: the noise is that of neighbors, in a row.
     let few = Scene::paint(70, 60, |x, y| {
         let level = |i: usize| 40.0 + 20.0 * (i % 7) as f64;
         [level(x / 10), level(y / 10), level((x + y) / 20)]

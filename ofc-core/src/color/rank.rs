@@ -6,7 +6,7 @@
 //! counts as noise. A deviation below 1.5 sigma is noise: where it is nothing else it measures 0.2 to 1.3 sigma, on the real
 //! photographs 4 and more, on rendered pictures that can be solved 2 and more. Where residuals are smaller than rounding to
 //! integers allows (a picture of a few discrete colors fits anything), and where there is no fit, the noise is that of
-//! neighbouring pixels instead.
+//! neighboring pixels instead.
 //!
 //! Normals. Those of three-dimensional colors are N = G0 rho, of unit length on the whole, with deviations nu along their
 //! principal axes: the eigenvalues of M^1/2 C M^1/2 are their squares, M being the colors' second moments. Their noise is

@@ -1,9 +1,9 @@
 //! Regions of one material and one light environment, each with its own ellipsoid: Petrov and Kontsevich.
 //!
 //! The colors at six contiguous pixels determine the six coefficients of the form (10). Around the six of the best of many
-//! random blocks the region is grown outward, to every neighbour whose residual |rho^T C rho - 1| is within the
+//! random blocks the region is grown outward, to every neighbor whose residual |rho^T C rho - 1| is within the
 //! tolerance. Then C is fitted again by least squares to the whole region and the region is grown again with it, for as long
-//! as that makes it larger: the one thing added to \[14\], where "no regression is used", because six neighbouring pixels of
+//! as that makes it larger: the one thing added to \[14\], where "no regression is used", because six neighboring pixels of
 //! a noisy picture say little about C. For the same reason the six pixels may lie further apart than one pixel (blocks of 2x3
 //! and 3x2 with the spacings 1, 2, 4, 8 and 16 are tried). Which block is best is decided by how many pixels around it agree
 //! with its C.

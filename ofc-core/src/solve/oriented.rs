@@ -21,7 +21,7 @@ pub(crate) struct Oriented {
 /// Why there is no F.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum NoOrientation {
-    /// A channel's mean gradient over the inliers is zero, or there are no neighbouring inliers.
+    /// A channel's mean gradient over the inliers is zero, or there are no neighboring inliers.
     NoTilt,
     /// No slants agree with these tilts and the angles between the rows of F, and there was to be no fallback.
     NoConsistentSlants { tilts: Tilts },

@@ -9,7 +9,7 @@ pub enum Outcome {
     RankDeficient,
     /// The colors do not lie on an ellipsoid: C is not positive definite.
     NotPositiveDefinite,
-    /// A channel's mean gradient over the inliers is zero, or there are no neighbouring inliers: no tilts.
+    /// A channel's mean gradient over the inliers is zero, or there are no neighboring inliers: no tilts.
     NoTilt,
     /// No slants agree with the tilts and the angles between the rows of F, and there was to be no fallback.
     NoConsistentSlants,

@@ -69,9 +69,9 @@ pub(super) const SYSTEMATIC_WINDOWS: f64 = 0.1;
 /// Systematic errors explain at least this share of s: none is ruled out by an estimate that happens to be zero.
 pub(super) const SMALLEST_SYSTEMATIC_SHARE: f64 = 1e-3;
 
-/// The scatter of gradients over the parts of a picture is less than it would be over pictures, because neighbours are alike: by
+/// The scatter of gradients over the parts of a picture is less than it would be over pictures, because neighbors are alike: by
 /// this factor, by trial.
-pub(super) const GRADIENT_NEIGHBOURS: f64 = 2.0;
+pub(super) const GRADIENT_NEIGHBORS: f64 = 2.0;
 
 /// Second derivatives below this share of their trace are rounding of the differences that they are made of.
 pub(super) const SMALLEST_CURVATURE: f64 = 1e-6;
@@ -82,9 +82,9 @@ pub(super) const SMALLEST_CURVATURE: f64 = 1e-6;
 /// cells.
 pub(super) const PARTS: usize = 5;
 
-/// The variance of slopes over a jackknife of the parts is less than it would be over pictures, because neighbours bulge
+/// The variance of slopes over a jackknife of the parts is less than it would be over pictures, because neighbors bulge
 /// together: by this factor, by trial.
-pub(super) const SLOPE_NEIGHBOURS: f64 = 1.5;
+pub(super) const SLOPE_NEIGHBORS: f64 = 1.5;
 
 /// Weights that are tried, of one kind of slopes against the other, from 0 to 1: steps of a tenth, finer than a jackknife
 /// over 25 parts tells apart.

@@ -10,7 +10,7 @@
 //! in s as much as along N. Such errors do not average out, and the more of s they explain the less it counts.
 
 use super::constants::{
-    CUT, GRADIENT_NEIGHBOURS, MEDIAN_OF_ONE, MEDIAN_OF_TWO, PARTS, ROUND_EVALUATIONS, ROUNDS,
+    CUT, GRADIENT_NEIGHBORS, MEDIAN_OF_ONE, MEDIAN_OF_TWO, PARTS, ROUND_EVALUATIONS, ROUNDS,
     SMALLEST_CURVATURE, SMALLEST_SYSTEMATIC_SHARE, SMALLEST_WINDOWS, SYSTEMATIC_WINDOWS,
 };
 use super::form::Form;
@@ -186,7 +186,7 @@ impl Sums {
         }
         let least = SMALLEST_CURVATURE * trace(&hessian).abs().max(f64::MIN_POSITIVE);
         let white = 1.0 / form.independent;
-        let random = GRADIENT_NEIGHBOURS * trace(&mat3::multiply(&inverse(&hessian, least), &scatter)) / 3.0;
+        let random = GRADIENT_NEIGHBORS * trace(&mat3::multiply(&inverse(&hessian, least), &scatter)) / 3.0;
         let share = share.max(SMALLEST_SYSTEMATIC_SHARE);
         let systematic = 2.0 * share * share * share / SYSTEMATIC_WINDOWS;
         let total = random.max(white) + systematic;

@@ -9,7 +9,7 @@
 //! the middle of all of the surface, by its curvature.
 
 use super::cells::Cells;
-use super::constants::{PARTS, SLOPE_NEIGHBOURS, SLOPE_WEIGHTS, SMALLEST_N3, SMALLEST_SLOPE_VARIANCE};
+use super::constants::{PARTS, SLOPE_NEIGHBORS, SLOPE_WEIGHTS, SMALLEST_N3, SMALLEST_SLOPE_VARIANCE};
 use super::moments::Moments;
 use crate::math::mat3::{self, Mat3};
 use libm::sqrt;
@@ -53,7 +53,7 @@ impl Slopes {
             sum += values().map(|value| (value - mean) * (value - mean)).sum::<f64>();
             *slot = component(&whole, i);
         }
-        let variance = SLOPE_NEIGHBOURS * sum * (used - 1) as f64 / used as f64 / 6.0;
+        let variance = SLOPE_NEIGHBORS * sum * (used - 1) as f64 / used as f64 / 6.0;
         Some(Self { along, variance: variance.max(SMALLEST_SLOPE_VARIANCE * size * size) })
     }
 

@@ -1,7 +1,8 @@
 //! The coupled depth/slope model: smooth slopes that span the gaps, and the depth that fits them.
 //!
 //! Over the mask, p minimises `sum of weight (p - data)² + smoothness * sum over edges of (difference of p)²`, and q
-//! likewise; weights are zero at unusable pixels, so that there the slopes follow from their neighbours. Depth is the
+//! minimises the same sum over its own data. Weights are zero at unusable pixels, so that there the slopes follow from their
+//! neighbors. Depth is the
 //! least-squares solution for these slopes. That is Harris's energy, in which depth, too, pulls at the slopes, in the limit
 //! of a weak pull: the slopes are settled first.
 //!
