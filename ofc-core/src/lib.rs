@@ -96,7 +96,7 @@
 //! | 3.4, steps 1-8 | the whole pipeline | [`solve()`] | `solve.rs` |
 //! | 4 | channel maxima instead of norms | [`light::channel_maxima`] | `light/channel_maxima.rs` |
 //! | 5 | correlations, tilts of the output, norms | [`check()`](check::check) | `check.rs` |
-//! | 5, Fig. 8 | depth by a Poisson equation; p = q = 0 at outliers | [`depth::Method`] | `surface/depth/poisson.rs`, `surface/depth/paper.rs` |
+//! | 5, Fig. 8 | depth by a Poisson equation; p = q = 0 at outliers | [`depth::Method`] | `surface/depth/poisson.rs`, `surface/depth/job.rs` |
 //! | \[25\] Harris | the energy of the coupled depth/slope model | [`depth::Method::Coupled`] | `surface/depth/coupled.rs` |
 //! | \[13\] Petrov, Kontsevich | ranks of colors and normals, and of the light and the surface of each patch | [`color::rank`](mod@color::rank), [`color::rank::Class`], [`color::rank::patches`](mod@color::rank::patches) | `color/rank.rs`, `color/rank/class.rs`, `color/rank/patches.rs` |
 //! | \[26\] Wolff | departure from the matte model toward grazing views | [`surface::wolff`](mod@surface::wolff) | `surface/wolff.rs` |
