@@ -92,6 +92,7 @@ impl Solution {
     ///
     /// # Errors
     /// [`FitError`] but [`FitError::RankDeficient`], which leaves a solution without a fit.
+    #[inline(never)]
     pub(crate) fn take_regression(
         &mut self,
         pixels: &impl Pixels,
@@ -142,6 +143,7 @@ impl Solution {
     ///
     /// # Scratch
     /// Two `f32` a pixel.
+    #[inline(never)]
     pub(crate) fn reject_lengths(&mut self, pixels: &impl Pixels, rejection: f64, workspace: &mut [f32]) {
         let Some(fit) = &self.fit else { return };
         self.norm_location = norms::location(pixels, &self.inliers, &fit.z(), workspace);
