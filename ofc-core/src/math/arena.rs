@@ -27,19 +27,6 @@ impl Need {
         let words = self.singles.saturating_add(self.integers);
         words.saturating_mul(size_of::<f32>()).saturating_add(self.doubles.saturating_mul(size_of::<f64>()))
     }
-
-    /// Enough for either of two stages that run one after the other.
-    #[must_use]
-    pub const fn or(self, other: Self) -> Self {
-        const fn larger(a: usize, b: usize) -> usize {
-            if a > b { a } else { b }
-        }
-        Self {
-            doubles: larger(self.doubles, other.doubles),
-            singles: larger(self.singles, other.singles),
-            integers: larger(self.integers, other.integers),
-        }
-    }
 }
 
 /// Memory that has not been cut off yet.
@@ -63,11 +50,6 @@ impl<'w> Arena<'w> {
         self.doubles.len() >= need.doubles
             && self.singles.len() >= need.singles
             && self.integers.len() >= need.integers
-    }
-
-    /// All of it again, for a stage that gives it back.
-    pub const fn lend(&mut self) -> Arena<'_> {
-        Arena { doubles: self.doubles, singles: self.singles, integers: self.integers }
     }
 
     /// Cuts off `count` doubles; `None` where fewer are left.
@@ -101,7 +83,6 @@ mod tests {
         let mut arena = Arena::new(&mut doubles, &mut singles, &mut integers);
         assert!(arena.holds(Need { doubles: 3, singles: 4, integers: 2 }));
         assert!(!arena.holds(Need { doubles: 3, singles: 5, integers: 2 }));
-        assert_eq!(arena.lend().singles(4).map(|s| s.len()), Some(4));
         let (first, second) = (arena.singles(1).unwrap(), arena.singles(3).unwrap());
         first.fill(1.0);
         second.fill(2.0);
@@ -115,7 +96,5 @@ mod tests {
     fn bytes_never_wrap_around() {
         assert_eq!(Need { doubles: 1, singles: 2, integers: 3 }.bytes(), 28);
         assert_eq!(Need::of_singles(usize::MAX).bytes(), usize::MAX);
-        let either = Need::of_singles(5).or(Need { doubles: 1, singles: 2, integers: 3 });
-        assert_eq!(either, Need { doubles: 1, singles: 5, integers: 3 });
     }
 }
