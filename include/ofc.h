@@ -43,8 +43,9 @@
 /// - Same bits: one version makes the same output bits of the same input and seed, on every target with IEEE 754
 ///   arithmetic.
 /// - NaN: pixels that are NaN or infinite are left out and counted. Parameters that are not finite are refused. The only
-///   NaNs in outputs say "no value here", in ofc_slant_curve_sample(), ofc_depth_integrate() and ofc_flat_field(); their
-///   bits are 0x7ff8000000000000 and 0x7fc00000 on every target.
+///   NaNs in outputs say "not known" or "no value here": in ofc_confidence, ofc_check_result, ofc_stream_drift, a
+///   covariance, ofc_slant_curve_sample(), ofc_depth_integrate() and ofc_flat_field(). Their bits are
+///   0x7ff8000000000000 and 0x7fc00000 on every target.
 /// - Equations and sections are numbered as in M. S. Drew, "Direct Solution of Orientation-from-Color Problem using a
 ///   Modification of Pentland's Light Source Direction Estimator". The direct method is the method of that paper.
 
@@ -329,6 +330,15 @@ typedef int32_t ofc_norm_source;
 /// change with it; the lengths of the normals do (section 4).
 #define OFC_NORMS_CHANNEL_MAXIMA 1
 
+/// Whether the surface is convex or hollow: one of OFC_CONVEXITY_*. A surface and its twin, whose depth has the other
+/// sign, have the same colors under lights that are turned half about the line of sight, so only the outline of an
+/// object that closes within the picture tells them apart.
+typedef int32_t ofc_convexity;
+
+#define OFC_CONVEXITY_AUTO 0 ///< Whichever of the two is more of a dome; `confidence.convexity` says how clear that is.
+#define OFC_CONVEXITY_CONVEX 1 ///< The same as OFC_CONVEXITY_AUTO, by the caller's word.
+#define OFC_CONVEXITY_HOLLOW 2 ///< The twin of that: an engraving, a mold, a pit.
+
 /// What ofc_solve() does. Set by ofc_solve_params_default().
 struct ofc_solve_params {
     ofc_lmeds_params lmeds; ///< The regression in color space, with the seed and the saturation level.
@@ -348,7 +358,10 @@ struct ofc_solve_params {
     /// Where the lengths of the rows of F come from with the direct method, one of OFC_NORMS_*; streams take
     /// OFC_NORMS_FIT alone. Default OFC_NORMS_FIT.
     ofc_norm_source norm_source;
-    uint32_t reserved[3]; ///< Must be zero.
+    /// Whether the surface is convex or hollow, one of OFC_CONVEXITY_*. Tilts that are given choose by themselves
+    /// whatever this is; streams take OFC_CONVEXITY_AUTO alone. Default OFC_CONVEXITY_AUTO.
+    ofc_convexity convexity;
+    uint32_t reserved[2]; ///< Must be zero.
 };
 
 /* ---- The solution, stage by stage ------------------------------------------------------------------------------- */
@@ -506,14 +519,16 @@ typedef int32_t ofc_evidence;
 #define OFC_EVIDENCE_INTEGRABILITY 2 ///< Mostly integrability.
 #define OFC_EVIDENCE_BOTH 3          ///< Integrability and outward normals.
 
-/// How sure the orientation of F is; all zero with the direct method. Errors of C, which turn and bend normals as well,
-/// are not part of it.
+/// How sure the orientation of F is. Errors of C, which turn and bend normals as well, are not part of it. All numbers
+/// are NaN, which says that they are not known, with the direct method, for a picture that is too small for the joint
+/// method, and without F.
 typedef struct ofc_confidence {
     /// Covariance of the small rotation vector by which all normals may be turned, in the frame of the normals and in
     /// radians^2.
     double covariance[9];
     double error_rad; ///< The expected root mean square angle by which a normal is turned, in radians.
-    /// How clearly the surface is convex, from 0 (as much convex as concave) to 1 (all of it is convex).
+    /// How clearly the normals are those of a convex surface, from 0 (as much convex as concave) to 1 (all of it is
+    /// convex); negative with OFC_CONVEXITY_HOLLOW.
     double convexity;
     /// The log likelihood of the orientation minus that of the best other one that is not near it; infinite where there
     /// is no other.
@@ -524,7 +539,8 @@ typedef struct ofc_confidence {
 
 #define OFC_MAX_CANDIDATES 8 ///< The largest number of slants that are consistent with three tilts and three cosines.
 
-/// What ofc_solve() found. On a positive status the fields of stages that were not reached are zero.
+/// What ofc_solve() found. On a positive status the fields of stages that were not reached are zero, but for
+/// `confidence`, which then is NaN.
 struct ofc_solution {
     ofc_status outcome;            ///< The status that ofc_solve() returned with this solution.
     ofc_slant_source slant_source; ///< Where the slants come from, one of OFC_SLANTS_*.
@@ -1216,30 +1232,35 @@ ofc_status ofc_render(const ofc_depth_map *depth, const ofc_lights *lights, cons
 ///   hardly or not at all.
 /// - `norm_median` is near 1, and `norm_min` and `norm_max` are near it, when most of the inliers obey the model.
 /// - `largest_p` above 0.05 says that a coefficient of C could as well be zero.
+///
+/// What is not known is NaN.
 typedef struct ofc_check_result {
     /// The correlation of each channel with the relit channel, over the inliers; 0 where one of them is constant.
     double correlation[3];
     double norm_median;    ///< The median length of the recovered normals before they are set to 1.
     double norm_min;       ///< The smallest length of these normals.
     double norm_max;       ///< The largest length of these normals.
-    ofc_tilts tilts;       ///< Pentland's tilts of the input; zero where there are none.
-    ofc_tilts relit_tilts; ///< Pentland's tilts of the relit picture; zero where there are none.
-    /// Tilts of the relit picture minus tilts of the input, in radians, in (-pi, pi]; zero where one picture has none.
+    ofc_tilts tilts;       ///< Pentland's tilts of the input; NaN where there are none.
+    ofc_tilts relit_tilts; ///< Pentland's tilts of the relit picture; NaN where there are none.
+    /// Tilts of the relit picture minus tilts of the input, in radians, in (-pi, pi]; NaN where one picture has none.
     double tilt_difference_rad[3];
-    /// Tilts of the rows of F minus tilts of the input, in radians, in (-pi, pi]; zero where the input has none.
+    /// Tilts of the rows of F minus tilts of the input, in radians, in (-pi, pi]; NaN where the input has none.
     double tilt_residual_rad[3];
-    /// The median angle in radians between the normals of the integrated surface and the normals of the colors; zero
+    /// The median angle in radians between the normals of the integrated surface and the normals of the colors; NaN
     /// without a surface.
     double depth_angle_median_rad;
-    ofc_tilts depth_tilts; ///< Pentland's tilts of the integrated surface shaded with F; zero where there are none.
-    /// Tilts of the shaded surface minus tilts of the input, in radians, in (-pi, pi]; zero where one picture has none.
+    ofc_tilts depth_tilts; ///< Pentland's tilts of the integrated surface shaded with F; NaN where there are none.
+    /// Tilts of the shaded surface minus tilts of the input, in radians, in (-pi, pi]; NaN where one picture has none.
     double depth_tilt_difference_rad[3];
     double largest_p; ///< The largest p value of the six coefficients of C.
     /// The root mean square angle over all directions, in radians, between the normals of F and the normals that agree
-    /// best with integrability and outward normals; zero where the picture does not determine it.
+    /// best with integrability and outward normals; NaN where the picture does not determine it. Of a solution with
+    /// OFC_CONVEXITY_HOLLOW it shows the twin.
     double turn_rad;
-    double turn_expected_rad;  ///< The angle in radians to expect of a right F, as far as the picture tells.
-    double convexity;          ///< How clear the choice between a surface and its convex/concave twin is, from 0 to 1.
+    /// The angle in radians to expect of a right F, as far as the picture tells; NaN where it does not.
+    double turn_expected_rad;
+    /// How clear the choice between a surface and its convex/concave twin is, from 0 to 1; NaN where nothing tells.
+    double convexity;
     int32_t inlier_count;      ///< How many pixels were compared.
     int32_t has_tilts;         ///< 1 when both pictures have tilts, 0 otherwise.
     int32_t depth_pixel_count; ///< How many inliers the integrated surface covers; zero without a surface.
@@ -1281,7 +1302,8 @@ typedef struct ofc_stream ofc_stream;
 typedef struct ofc_stream_params {
     /// The parameters of ofc_solve(), with these differences: `lmeds.sample_size` is how many colors the stream stores,
     /// at least 24, by default 2048; `tilt_estimator` is OFC_TILT_PENTLAND or OFC_TILT_GIVEN; `slant_fallback` is
-    /// OFC_FALLBACK_REFUSE or OFC_FALLBACK_LEAST_SQUARES. A library without the feature `full-streams`, for small
+    /// OFC_FALLBACK_REFUSE or OFC_FALLBACK_LEAST_SQUARES; `convexity` is
+    /// OFC_CONVEXITY_AUTO: negate x and y of the normals of a hollow. A library without the feature `full-streams`, for small
     /// memories, takes the direct method without shadow rejection alone, which is its default.
     ofc_solve_params solve;
     /// Where a smaller ratio of the usable pixels fits the model, a frame does not refine it and
@@ -1311,10 +1333,10 @@ typedef int32_t ofc_stream_pass;
 typedef struct ofc_stream_drift {
     /// The ratio of the usable pixels in the rows that were used whose residual the old model accepts.
     double inlier_ratio;
-    double angle_rad[3]; ///< Angles between the old and the new rows of F in radians; zero where there is no new model.
-    /// Lengths of the new rows of F over those of the old rows; zero where there is no new model.
+    double angle_rad[3]; ///< Angles between the old and the new rows of F in radians; NaN where there is no new model.
+    /// Lengths of the new rows of F over those of the old rows; NaN where there is no new model.
     double strength_ratio[3];
-    /// Dispersion of the new residuals over that of the old residuals; zero where there is no new model.
+    /// Dispersion of the new residuals over that of the old residuals; NaN where there is no new model.
     double dispersion_ratio;
     int32_t refined;   ///< 1 when there is a new model, 0 when a cold start is needed.
     uint32_t reserved; ///< Zero.
@@ -1358,7 +1380,7 @@ size_t ofc_stream_size(int32_t width, int32_t height, const ofc_stream_params *p
 /// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of as
 /// many windows as the memory holds. Where the sample holds all pixels, or with the direct method all usable pixels,
 /// the solution is equal to that of ofc_solve() bit by bit, but for the integral of a lone candidate, which is not
-/// computed (infinite). Without the feature `full-streams` fit.covariance is zero.
+/// computed (infinite). Without the feature `full-streams` fit.covariance is NaN: not known.
 ///
 /// Frames that refine F follow C and the strength of the lights, and with the direct method also the tilts. With the
 /// joint method a turn of all lights about the scene goes unnoticed; ofc_stream_restart() is needed after it.

@@ -195,6 +195,16 @@ json "$out/paper/report.json" 'near([r["check"]["turn"]["deg"]], 4.01, 0.12)'
 json "$out/scene/report.json" 'r["check"]["turn"]["deg"] < 0.01 < r["check"]["turn"]["expected_deg"]' # 0 by construction
 json "$out/scene/report.json" 'r["confidence"]["expected_error_deg"] < 0.99 and "trust" in r["confidence"]["in_words"]' # 0.96
 json "$out/scene/report.json" 'r["pixels"]["shaded"] == 32080 and r["from_behind"] == [False] * 3'
+# Numbers that are not known are null. The twin of a surface is as sure as the surface, but for a check against the other.
+json "$out/paper/report.json" 'r["confidence"]["expected_error_deg"] is None and "not known" in r["confidence"]["in_words"]'
+says "not known: the orientation rests on tilts alone"
+expect 0 "$photo" --hollow --out "$out/hollow"
+says "hollow, as --hollow says"
+json "$out/hollow/report.json" 'r["confidence"]["convexity"] < 0 and r["confidence"]["expected_error_deg"] < 0.99 and r["check"]["turn"]["deg"] > 100'
+expect 0 "$photo" --convex --out "$out/hollow"
+says "convex, as --convex says"
+json "$out/hollow/report.json" 'r["confidence"]["convexity"] > 0 and r["median_error_deg"] < 2.64'
+expect 2 "$photo" --convex --hollow
 expect 0 "$photo" --shadows keep --out "$out/keep"
 says "shadows    kept:"
 json "$out/keep/report.json" 'r["pixels"]["shaded"] == 0'

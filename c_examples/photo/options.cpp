@@ -19,6 +19,7 @@ ofc_solve_params Options::solve_params(ofc_orientation_method method) const
     params.lmeds.subsets = subsets;
     params.lmeds.method = fit == "squares" ? OFC_FIT_LEAST_SQUARES : OFC_FIT_LEAST_MEDIAN;
     params.orientation_method = method;
+    params.convexity = hollow ? OFC_CONVEXITY_HOLLOW : convex ? OFC_CONVEXITY_CONVEX : OFC_CONVEXITY_AUTO;
     return params;
 }
 
@@ -50,6 +51,8 @@ Options parse_options(int argc, char **argv)
                     "How F is oriented: joint weighs integrability and normals that point outward, direct is the paper's method,\n"
                     "slants from tilts (default: joint)")
         ->check(CLI::IsMember({"joint", "direct"}));
+    auto *convex = line.add_flag("--convex", options.convex, "The surface is raised: no doubt about it");
+    line.add_flag("--hollow", options.hollow, "The surface is hollow: an engraving, a mold, a pit")->excludes(convex);
     options.shadows.add_to(line);
     options.depth.add_to(line);
     line.add_option("--report", options.report,

@@ -16,6 +16,7 @@ struct Options {
     std::string fit = "median", orientation = "joint", report = "short";
     ShadowOption shadows;
     DepthOptions depth;
+    bool convex = false, hollow = false; // what the caller knows of the surface
     bool save_planes = false; // the channels as three gray pictures
     std::string out;
 

@@ -1,10 +1,11 @@
 #include "photo/report.hpp"
 
-#include <algorithm>
+#include "photo/text.hpp"
+#include "photo/trust.hpp"
+
 #include <cmath>
-#include <cstdarg>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 using json = nlohmann::ordered_json;
 
@@ -88,40 +89,10 @@ json check_report(const ofc_check_result &check)
     return report;
 }
 
-std::string text(const char *format, ...) __attribute__((format(printf, 1, 2)));
-
-std::string text(const char *format, ...)
-{
-    char line[256];
-    va_list arguments;
-    va_start(arguments, format);
-    std::vsnprintf(line, sizeof line, format, arguments);
-    va_end(arguments);
-    return line;
-}
-
 // Whether the light of a channel shines from behind the surface, which only the joint method can find.
 bool from_behind(const ofc_solution &s, int channel)
 {
     return (s.lights_from_behind >> channel & 1) != 0;
-}
-
-// How far to trust the result, in plain words.
-std::string trust(const Result &result)
-{
-    const ofc_confidence &c = result.solution.confidence;
-    if (c.evidence == OFC_EVIDENCE_TILTS_ALONE)
-        return "the orientation rests on tilts alone: good for closed convex shapes, not known how good for this one";
-    const double sigma = quantile(result.uncertainty, 0.5);
-    const char *level = sigma < 5 ? "trust the normals" : sigma < 12 ? "trust the normals roughly" : "do not rely on the normals";
-    const char *evidence = c.evidence == OFC_EVIDENCE_OUTWARD         ? "from normals that point outward"
-                           : c.evidence == OFC_EVIDENCE_INTEGRABILITY ? "from integrability"
-                                                                      : "from integrability and normals that point outward";
-    const char *shape = c.convexity > 0.5 ? "clearly convex" : c.convexity > 0.15 ? "more convex than concave" : "convex or concave is a guess";
-    // A hundredth as likely.
-    const char *second = c.log_likelihood_margin < 4.6 ? "; another is not ruled out" : "";
-    return text("%s: expected to be off by %.1f degrees, as a whole by %.1f; orientation %s, %s%s", level, sigma,
-                degrees(c.error_rad), evidence, shape, second);
 }
 
 template <std::size_t size> json rows(const double (&entries)[size], std::size_t columns)
@@ -141,28 +112,43 @@ json uncertainty(const Result &result)
             {"covariance_of_F", rows(result.covariance.f, 9)}};
 }
 
+// Numbers that are not known, which are NaN, become null.
 json confidence(const Result &result)
 {
     static const char *const names[] = {"tilts alone", "outward normals", "integrability", "both"};
+    if (!result.solved())
+        return nullptr;
     const ofc_confidence &c = result.solution.confidence;
-    return {{"evidence", names[c.evidence]},       {"expected_error_deg", degrees(c.error_rad)}, {"convexity", c.convexity},
-            {"second_best", c.log_likelihood_margin},        {"covariance", matrix(c.covariance)},         {"in_words", trust(result)}};
+    return {{"evidence", names[c.evidence]},
+            {"expected_error_deg", degrees(c.error_rad)},
+            {"convexity", c.convexity},
+            {"open_outline", result.open_outline},
+            {"second_best", c.log_likelihood_margin},
+            {"covariance", matrix(c.covariance)},
+            {"in_words", trust(result)}};
+}
+
+// What a stage found, or null where the solve did not come so far.
+json found(bool is_there, json value)
+{
+    return is_there ? std::move(value) : json(nullptr);
+}
+
+// A long line becomes several, of which only the first has the label.
+void add_wrapped(std::vector<Line> &lines, std::string label, std::string text)
+{
+    constexpr std::size_t width = 180;
+    while (text.size() > width) {
+        const std::size_t end = text.rfind(' ', width);
+        if (end == std::string::npos)
+            break;
+        lines.push_back({std::exchange(label, ""), text.substr(0, end)});
+        text.erase(0, end + 1);
+    }
+    lines.push_back({label, text});
 }
 
 } // namespace
-
-double quantile(const cv::Mat &values, double share)
-{
-    std::vector<float> finite;
-    for (const float value : cv::Mat_<float>(values))
-        if (std::isfinite(value))
-            finite.push_back(value);
-    if (finite.empty())
-        return std::nan("");
-    const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(finite.size() - 1));
-    std::nth_element(finite.begin(), middle, finite.end());
-    return *middle;
-}
 
 cv::Mat uncertainty_picture(const Result &result, cv::Rect part)
 {
@@ -176,6 +162,7 @@ cv::Mat uncertainty_picture(const Result &result, cv::Rect part)
 void write_report(const std::string &path, const Result &result)
 {
     const ofc_solution &s = result.solution;
+    const bool is_fitted = s.fit.inlier_count > 0, is_ellipsoid = s.ellipsoid.norms[0] > 0, is_oriented = s.orientation.rank > 0;
     json report = {
         {"status", ofc_status_message(result.status)},
         {"status_code", result.status},
@@ -192,34 +179,34 @@ void write_report(const std::string &path, const Result &result)
           {"saturated", s.pixel_counts.saturated},
           {"shaded", s.pixel_counts.shadowed},
           {"non_finite", s.pixel_counts.non_finite}}},
-        {"coefficients", coefficients(s.fit)},
-        {"C", matrix(s.ellipsoid.c)},
-        {"r_squared", s.fit.r_squared},
-        {"dispersion", s.fit.dispersion},
-        {"noise_deviation", s.fit.noise_deviation},
-        {"degenerate_noise_deviation", s.fit.degenerate_noise_deviation},
+        {"coefficients", found(is_fitted, coefficients(s.fit))},
+        {"C", found(is_ellipsoid, matrix(s.ellipsoid.c))},
+        {"r_squared", found(is_fitted, s.fit.r_squared)},
+        {"dispersion", found(is_fitted, s.fit.dispersion)},
+        {"noise_deviation", found(is_fitted, s.fit.noise_deviation)},
+        {"degenerate_noise_deviation", found(is_fitted, s.fit.degenerate_noise_deviation)},
         {"inliers", {{"after_residuals", s.fit.inlier_count}, {"after_norms", s.inlier_count}}},
-        {"norm_location", s.norm_location.location},
-        {"norms", s.ellipsoid.norms},
-        {"cosines", s.ellipsoid.cosines},
-        {"tilt_deg", in_degrees(s.tilts.tilt_rad)},
-        {"slant_deg", in_degrees(s.slant_rad)},
+        {"norm_location", found(is_ellipsoid, s.norm_location.location)},
+        {"norms", found(is_ellipsoid, s.ellipsoid.norms)},
+        {"cosines", found(is_ellipsoid, s.ellipsoid.cosines)},
+        {"tilt_deg", found(is_oriented, in_degrees(s.tilts.tilt_rad))},
+        {"slant_deg", found(is_oriented, in_degrees(s.slant_rad))},
         {"slant_source", source_name(s.slant_source)},
         {"from_behind", {from_behind(s, 0), from_behind(s, 1), from_behind(s, 2)}},
         {"confidence", confidence(result)},
         {"candidates", candidates(s)},
-        {"F", matrix(s.orientation.f)},
-        {"singular_values", s.orientation.singular_values},
+        {"F", found(is_oriented, matrix(s.orientation.f))},
+        {"singular_values", found(is_oriented, s.orientation.singular_values)},
     };
     for (const auto &[stage, milliseconds] : result.milliseconds)
         report["ms"][stage] = std::round(milliseconds * 1000) / 1000;
     if (result.status >= 0)
         report["rank"] = {{"colors", s.rank.colors},
-                          {"normals", s.rank.normals},
+                          {"normals", found(s.rank.normals > 0, s.rank.normals)},
                           {"color_deviations", s.rank.color_deviations},
                           {"color_noise", s.rank.color_noise},
-                          {"normal_deviations", s.rank.normal_deviations},
-                          {"normal_noise", s.rank.normal_noise}};
+                          {"normal_deviations", found(s.rank.normals > 0, s.rank.normal_deviations)},
+                          {"normal_noise", found(s.rank.normals > 0, s.rank.normal_noise)}};
     if (result.check)
         report["check"] = check_report(*result.check);
     if (result.solved())
@@ -249,13 +236,13 @@ std::vector<Line> summary(const Result &result)
     lines.push_back({"shadows", result.shadows});
     lines.push_back({"pixels", text("%d usable, %d inliers after residuals, %d after norms", s.pixel_counts.usable,
                                     s.fit.inlier_count, s.inlier_count)});
-    lines.push_back({"ellipsoid", text("robust R² %.4f, dispersion %.4f", s.fit.r_squared, s.fit.dispersion)});
+    if (s.fit.inlier_count > 0)
+        lines.push_back({"ellipsoid", text("robust R² %.4f, dispersion %.4f", s.fit.r_squared, s.fit.dispersion)});
     if (s.orientation.rank == 0)
         return lines;
     lines.back().text += text(", location of norms %.4f", s.norm_location.location);
-    if (s.slant_source == OFC_SLANTS_JOINT)
-        lines.push_back({"trust", trust(result)});
-    else
+    add_wrapped(lines, "trust", trust(result));
+    if (s.slant_source != OFC_SLANTS_JOINT)
         lines.push_back({"slants", text("from a %s; %d candidate%s", source_name(s.slant_source), s.candidate_count,
                                         s.candidate_count == 1 ? "" : "s")});
     for (int c = 0; c < 3; c++) {

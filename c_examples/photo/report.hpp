@@ -4,9 +4,6 @@
 #include "common/draw.hpp"
 #include "photo/result.hpp"
 
-// The value that this share of the finite ones is below; NaN where there are none.
-double quantile(const cv::Mat &values, double share);
-
 // A part of the uncertainty in colors, beside a bar in degrees. The first and last hundredth of the values share
 // the first and last color.
 cv::Mat uncertainty_picture(const Result &result, cv::Rect part);

@@ -5,6 +5,7 @@
 #include "common/estimates.hpp"
 #include "common/picture.hpp"
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,7 @@ struct Result {
     cv::Mat inliers;                // CV_8U, 255 for an inlier
     cv::Mat normals;                // CV_32FC3 x, y, z; zero where there is none
     cv::Mat uncertainty;            // CV_32F, 1-sigma angle in degrees, NaN where there is no normal; empty where it is not known
+    double open_outline = std::nan(""); // the share of the surface's outline at which it goes on; NaN where there are no normals
     ofc_covariance covariance = {}; // where the uncertainty is known
     DepthOptions depth;             // what was wanted of it
     Surface surface;                // empty where there are no normals

@@ -1,6 +1,7 @@
 #include "photo/solve.hpp"
 
 #include "common/workspace.hpp"
+#include "photo/trust.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -81,6 +82,7 @@ Result solve(const Picture &picture, const ofc_solve_params &params, const Shado
         return ofc_normals_compute(&image, &result.solution, result.normals.ptr<float>(), result.normals.step);
     });
     add_uncertainty(image, result);
+    result.open_outline = open_outline(picture.mask, result.inliers, result.normals);
     result.surface = integrate(result.normals, spanned(result.inliers, picture.mask), depth.params());
     result.check = check(image, result);
     return result;

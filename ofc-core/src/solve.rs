@@ -26,7 +26,7 @@ mod solution;
 pub use choice::{Candidate, Choice, SlantSource};
 pub use fallback::SlantFallback;
 pub use outcome::Outcome;
-pub use parameters::{NormSource, OrientationMethod, Params, ShadowRejection};
+pub use parameters::{Convexity, NormSource, OrientationMethod, Params, ShadowRejection};
 pub use solution::Solution;
 
 pub(crate) use color_model::SMALLEST_NOISE_MARGIN;
@@ -77,7 +77,9 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
             solution.reject_lengths(image, params.lmeds.rejection, workspace);
             // Steps 3 to 8.
             let orientation = orientation(image, &ellipsoid, &solution.inliers, params, workspace);
-            solution.take_orientation(orientation);
+            solution.take_orientation(
+                orientation.map(|dome| if params.is_hollow() { dome.twin() } else { dome }),
+            );
         }
         Err(reason) => solution.end_without_model(reason),
     }

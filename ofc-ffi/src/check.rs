@@ -5,6 +5,7 @@ use ofc_core::check::{self, Check, Norms, Turn};
 use ofc_core::color::inliers::Inliers;
 use ofc_core::color::rank::{self, Rank};
 use ofc_core::color::regression::Estimate;
+use ofc_core::light::tilt::Tilts;
 
 /// How well a solution explains its own picture. How to read it:
 ///
@@ -29,6 +30,8 @@ use ofc_core::color::regression::Estimate;
 ///   hardly or not at all.
 /// - `norm_median` is near 1, and `norm_min` and `norm_max` are near it, when most of the inliers obey the model.
 /// - `largest_p` above 0.05 says that a coefficient of C could as well be zero.
+///
+/// What is not known is NaN.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_check_result {
@@ -40,29 +43,30 @@ pub struct ofc_check_result {
     pub norm_min: f64,
     /// The largest length of these normals.
     pub norm_max: f64,
-    /// Pentland's tilts of the input; zero where there are none.
+    /// Pentland's tilts of the input; NaN where there are none.
     pub tilts: ofc_tilts,
-    /// Pentland's tilts of the relit picture; zero where there are none.
+    /// Pentland's tilts of the relit picture; NaN where there are none.
     pub relit_tilts: ofc_tilts,
-    /// Tilts of the relit picture minus tilts of the input, in radians, in (-pi, pi]; zero where one picture has none.
+    /// Tilts of the relit picture minus tilts of the input, in radians, in (-pi, pi]; NaN where one picture has none.
     pub tilt_difference_rad: [f64; 3],
-    /// Tilts of the rows of F minus tilts of the input, in radians, in (-pi, pi]; zero where the input has none.
+    /// Tilts of the rows of F minus tilts of the input, in radians, in (-pi, pi]; NaN where the input has none.
     pub tilt_residual_rad: [f64; 3],
-    /// The median angle in radians between the normals of the integrated surface and the normals of the colors; zero
+    /// The median angle in radians between the normals of the integrated surface and the normals of the colors; NaN
     /// without a surface.
     pub depth_angle_median_rad: f64,
-    /// Pentland's tilts of the integrated surface shaded with F; zero where there are none.
+    /// Pentland's tilts of the integrated surface shaded with F; NaN where there are none.
     pub depth_tilts: ofc_tilts,
-    /// Tilts of the shaded surface minus tilts of the input, in radians, in (-pi, pi]; zero where one picture has none.
+    /// Tilts of the shaded surface minus tilts of the input, in radians, in (-pi, pi]; NaN where one picture has none.
     pub depth_tilt_difference_rad: [f64; 3],
     /// The largest p value of the six coefficients of C.
     pub largest_p: f64,
     /// The root mean square angle over all directions, in radians, between the normals of F and the normals that agree
-    /// best with integrability and outward normals; zero where the picture does not determine it.
+    /// best with integrability and outward normals; NaN where the picture does not determine it. Of a solution with
+    /// OFC_CONVEXITY_HOLLOW it shows the twin.
     pub turn_rad: f64,
-    /// The angle in radians to expect of a right F, as far as the picture tells.
+    /// The angle in radians to expect of a right F, as far as the picture tells; NaN where it does not.
     pub turn_expected_rad: f64,
-    /// How clear the choice between a surface and its convex/concave twin is, from 0 to 1.
+    /// How clear the choice between a surface and its convex/concave twin is, from 0 to 1; NaN where nothing tells.
     pub convexity: f64,
     /// How many pixels were compared.
     pub inlier_count: i32,
@@ -116,20 +120,23 @@ impl ToC<ofc_check_result> for Check {
             largest_p,
         } = self;
         let depth = depth.unwrap_or_default();
-        let nothing = Turn { angle: 0.0, expected: 0.0, convexity: 0.0 };
+        let nothing = Turn { angle: f64::NAN, expected: f64::NAN, convexity: f64::NAN };
         let Turn { angle, expected, convexity } = turn.unwrap_or(nothing);
+        let unknown = Tilts { tilts: [f64::NAN; 3], gradients: [[f64::NAN; 2]; 3] };
+        let known = |tilts: Option<Tilts>| tilts.unwrap_or(unknown).to_c();
+        let angles = |angles: Option<[f64; 3]>| angles.unwrap_or([f64::NAN; 3]);
         ofc_check_result {
             correlation: *correlations,
             norm_median: *median,
             norm_min: *min,
             norm_max: *max,
-            tilts: tilts.to_c(),
-            relit_tilts: relit_tilts.to_c(),
-            tilt_difference_rad: tilt_differences.unwrap_or_default(),
-            tilt_residual_rad: tilt_residuals.unwrap_or_default(),
-            depth_angle_median_rad: depth.median_angle,
-            depth_tilts: depth.tilts.to_c(),
-            depth_tilt_difference_rad: depth.tilt_differences.unwrap_or_default(),
+            tilts: known(*tilts),
+            relit_tilts: known(*relit_tilts),
+            tilt_difference_rad: angles(*tilt_differences),
+            tilt_residual_rad: angles(*tilt_residuals),
+            depth_angle_median_rad: depth.median_angle.unwrap_or(f64::NAN),
+            depth_tilts: known(depth.tilts),
+            depth_tilt_difference_rad: angles(depth.tilt_differences),
             largest_p: *largest_p,
             turn_rad: angle,
             turn_expected_rad: expected,

@@ -4,8 +4,8 @@ use crate::prelude::*;
 use ofc_core::light::tilt::TiltEstimator;
 use ofc_core::orientation::joint::{Evidence, Joint};
 use ofc_core::solve::{
-    self, Candidate, Choice, NormSource, OrientationMethod, Params, ShadowRejection, SlantFallback,
-    SlantSource, Solution,
+    self, Candidate, Choice, Convexity, NormSource, OrientationMethod, Params, ShadowRejection,
+    SlantFallback, SlantSource, Solution,
 };
 
 /// Where slants come from: one of OFC_SLANTS_*.
@@ -81,6 +81,17 @@ pub const OFC_NORMS_FIT: i32 = 0;
 /// change with it; the lengths of the normals do (section 4).
 pub const OFC_NORMS_CHANNEL_MAXIMA: i32 = 1;
 
+/// Whether the surface is convex or hollow: one of OFC_CONVEXITY_*. A surface and its twin, whose depth has the other
+/// sign, have the same colors under lights that are turned half about the line of sight, so only the outline of an
+/// object that closes within the picture tells them apart.
+pub type ofc_convexity = i32;
+/// Whichever of the two is more of a dome; `confidence.convexity` says how clear that is.
+pub const OFC_CONVEXITY_AUTO: i32 = 0;
+/// The same as OFC_CONVEXITY_AUTO, by the caller's word.
+pub const OFC_CONVEXITY_CONVEX: i32 = 1;
+/// The twin of that: an engraving, a mold, a pit.
+pub const OFC_CONVEXITY_HOLLOW: i32 = 2;
+
 /// What ofc_solve() does. Set by ofc_solve_params_default().
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -105,21 +116,26 @@ pub struct ofc_solve_params {
     /// Where the lengths of the rows of F come from with the direct method, one of OFC_NORMS_*; streams take
     /// OFC_NORMS_FIT alone. Default OFC_NORMS_FIT.
     pub norm_source: ofc_norm_source,
+    /// Whether the surface is convex or hollow, one of OFC_CONVEXITY_*. Tilts that are given choose by themselves
+    /// whatever this is; streams take OFC_CONVEXITY_AUTO alone. Default OFC_CONVEXITY_AUTO.
+    pub convexity: ofc_convexity,
     /// Must be zero.
-    pub reserved: [u32; 3],
+    pub reserved: [u32; 2],
 }
 
-/// How sure the orientation of F is; all zero with the direct method. Errors of C, which turn and bend normals as well,
-/// are not part of it.
+/// How sure the orientation of F is. Errors of C, which turn and bend normals as well, are not part of it. All numbers
+/// are NaN, which says that they are not known, with the direct method, for a picture that is too small for the joint
+/// method, and without F.
 #[repr(C)]
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct ofc_confidence {
     /// Covariance of the small rotation vector by which all normals may be turned, in the frame of the normals and in
     /// radians^2.
     pub covariance: [f64; 9],
     /// The expected root mean square angle by which a normal is turned, in radians.
     pub error_rad: f64,
-    /// How clearly the surface is convex, from 0 (as much convex as concave) to 1 (all of it is convex).
+    /// How clearly the normals are those of a convex surface, from 0 (as much convex as concave) to 1 (all of it is
+    /// convex); negative with OFC_CONVEXITY_HOLLOW.
     pub convexity: f64,
     /// The log likelihood of the orientation minus that of the best other one that is not near it; infinite where there
     /// is no other.
@@ -130,7 +146,8 @@ pub struct ofc_confidence {
     pub reserved: u32,
 }
 
-/// What ofc_solve() found. On a positive status the fields of stages that were not reached are zero.
+/// What ofc_solve() found. On a positive status the fields of stages that were not reached are zero, but for
+/// `confidence`, which then is NaN.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ofc_solution {
@@ -196,6 +213,11 @@ constants!(Evidence = {
     Both: OFC_EVIDENCE_BOTH,
 });
 constants!(NormSource = { Fit: OFC_NORMS_FIT, ChannelMaxima: OFC_NORMS_CHANNEL_MAXIMA });
+constants!(Convexity = {
+    Auto: OFC_CONVEXITY_AUTO,
+    Convex: OFC_CONVEXITY_CONVEX,
+    Hollow: OFC_CONVEXITY_HOLLOW,
+});
 constants!(SlantFallback = {
     Refuse: OFC_FALLBACK_REFUSE,
     LeastSquares: OFC_FALLBACK_LEAST_SQUARES,
@@ -217,14 +239,15 @@ impl ToC<ofc_solve_params> for Params {
             orientation_method: self.orientation_method.to_c(),
             shadow_rejection: self.shadow_rejection.to_c(),
             norm_source: self.norms.to_c(),
-            reserved: [0; 3],
+            convexity: self.convexity.to_c(),
+            reserved: [0; 2],
         }
     }
 }
 
 impl FromC<ofc_solve_params> for Params {
     fn from_c(value: ofc_solve_params) -> Result<Self, Refusal> {
-        ensure(value.reserved == [0; 3], OFC_STATUS_RESERVED_NOT_ZERO)?;
+        ensure(value.reserved == [0; 2], OFC_STATUS_RESERVED_NOT_ZERO)?;
         let (lmeds, saturation) = FromC::from_c(value.lmeds)?;
         let params = Self {
             lmeds,
@@ -242,9 +265,24 @@ impl FromC<ofc_solve_params> for Params {
             rank_threshold: value.rank_threshold,
             fallback: FromC::from_c(value.slant_fallback)?,
             norms: FromC::from_c(value.norm_source)?,
+            convexity: FromC::from_c(value.convexity)?,
         };
         ensure(params.are_valid(), OFC_STATUS_INVALID_PARAMETER)?;
         Ok(params)
+    }
+}
+
+/// Nothing is known.
+impl Default for ofc_confidence {
+    fn default() -> Self {
+        Self {
+            covariance: [f64::NAN; 9],
+            error_rad: f64::NAN,
+            convexity: f64::NAN,
+            log_likelihood_margin: f64::NAN,
+            evidence: OFC_EVIDENCE_TILTS_ALONE,
+            reserved: 0,
+        }
     }
 }
 

@@ -26,7 +26,8 @@ pub const OFC_PASS_INTEGRABILITY: i32 = 6;
 pub struct ofc_stream_params {
     /// The parameters of ofc_solve(), with these differences: `lmeds.sample_size` is how many colors the stream stores,
     /// at least 24, by default 2048; `tilt_estimator` is OFC_TILT_PENTLAND or OFC_TILT_GIVEN; `slant_fallback` is
-    /// OFC_FALLBACK_REFUSE or OFC_FALLBACK_LEAST_SQUARES. A library without the feature `full-streams`, for small
+    /// OFC_FALLBACK_REFUSE or OFC_FALLBACK_LEAST_SQUARES; `convexity` is
+    /// OFC_CONVEXITY_AUTO: negate x and y of the normals of a hollow. A library without the feature `full-streams`, for small
     /// memories, takes the direct method without shadow rejection alone, which is its default.
     pub solve: ofc_solve_params,
     /// Where a smaller ratio of the usable pixels fits the model, a frame does not refine it and
@@ -47,11 +48,11 @@ pub struct ofc_stream_params {
 pub struct ofc_stream_drift {
     /// The ratio of the usable pixels in the rows that were used whose residual the old model accepts.
     pub inlier_ratio: f64,
-    /// Angles between the old and the new rows of F in radians; zero where there is no new model.
+    /// Angles between the old and the new rows of F in radians; NaN where there is no new model.
     pub angle_rad: [f64; 3],
-    /// Lengths of the new rows of F over those of the old rows; zero where there is no new model.
+    /// Lengths of the new rows of F over those of the old rows; NaN where there is no new model.
     pub strength_ratio: [f64; 3],
-    /// Dispersion of the new residuals over that of the old residuals; zero where there is no new model.
+    /// Dispersion of the new residuals over that of the old residuals; NaN where there is no new model.
     pub dispersion_ratio: f64,
     /// 1 when there is a new model, 0 when a cold start is needed.
     pub refined: i32,
@@ -188,7 +189,7 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 /// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of as
 /// many windows as the memory holds. Where the sample holds all pixels, or with the direct method all usable pixels,
 /// the solution is equal to that of ofc_solve() bit by bit, but for the integral of a lone candidate, which is not
-/// computed (infinite). Without the feature `full-streams` fit.covariance is zero.
+/// computed (infinite). Without the feature `full-streams` fit.covariance is NaN: not known.
 ///
 /// Frames that refine F follow C and the strength of the lights, and with the direct method also the tilts. With the
 /// joint method a turn of all lights about the scene goes unnoticed; ofc_stream_restart() is needed after it.
@@ -348,7 +349,7 @@ pub unsafe extern "C" fn ofc_stream_drift_get(
         let stream = call.stream(stream)?;
         let out = call.output(drift)?;
         let Drift { inlier_share, change } = *stream.state().drift().ok_or(OFC_STATUS_NOT_SOLVED)?;
-        let nothing = Change { angles: [0.0; 3], strengths: [0.0; 3], dispersion: 0.0 };
+        let nothing = Change { angles: [f64::NAN; 3], strengths: [f64::NAN; 3], dispersion: f64::NAN };
         let Change { angles, strengths, dispersion } = change.unwrap_or(nothing);
         *out = ofc_stream_drift {
             inlier_ratio: inlier_share,

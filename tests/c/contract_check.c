@@ -67,7 +67,8 @@ static void check(void **state)
         assert_true(fabs(out.result.tilt_difference_rad[c]) < 0.05);
     }
     assert_true(out.result.norm_min <= out.result.norm_median && out.result.norm_median <= out.result.norm_max);
-    assert_true(out.result.depth_pixel_count == 0 && out.result.depth_angle_median_rad == 0);
+    assert_true(out.result.depth_pixel_count == 0 && isnan(out.result.depth_angle_median_rad));
+    assert_true(isnan(out.result.depth_tilts.tilt_rad[0]) && isnan(out.result.depth_tilt_difference_rad[2]));
     assert_true(out.result.has_turn == 1 && out.result.reserved == 0);
     assert_true(out.result.turn_rad < 0.1 && out.result.turn_expected_rad < 0.1 && out.result.convexity > 0.9);
     /* The convex/concave twin, whose normals are turned half about the line of sight. */

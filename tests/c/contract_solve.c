@@ -83,7 +83,7 @@ static void bad_parameters(void **state)
     struct {
         ofc_solve_params params;
         ofc_status expected;
-    } bad[36];
+    } bad[38];
     size_t n = 0;
 #define BAD(status, field, value)                                                                                      \
     (bad[n].params = stages.params, bad[n].params.field = (value), bad[n++].expected = (status))
@@ -113,7 +113,9 @@ static void bad_parameters(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, lmeds.method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, slant_fallback, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[0], 1);
-    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[2], 1);
+    BAD(OFC_STATUS_RESERVED_NOT_ZERO, reserved[1], 1);
+    BAD(OFC_STATUS_INVALID_PARAMETER, convexity, 3);
+    BAD(OFC_STATUS_INVALID_PARAMETER, convexity, -1);
     BAD(OFC_STATUS_INVALID_PARAMETER, shadow_rejection, 3);
     BAD(OFC_STATUS_INVALID_PARAMETER, shadow_rejection, -1);
     BAD(OFC_STATUS_INVALID_PARAMETER, norm_source, 2);
@@ -156,6 +158,7 @@ static void pictures_without_an_answer(void **state)
     assert_int_equal(out.solution.chosen, -1);
     assert_int_equal(out.solution.inlier_count, 0);
     assert_true(out.solution.fit.color_deviations[0] > 0);
+    assert_true(isnan(out.solution.confidence.error_rad));
 
     static float floats[HEIGHT][WIDTH][3];
     for (int i = 0; i < PIXELS * 3; i++)
@@ -218,7 +221,8 @@ static void methods(void **state)
     /* The direct method claims no certainty; given tilts take it. */
     assert_int_equal(stages.solution.slant_source, OFC_SLANTS_ROOT);
     assert_true(stages.solution.confidence.evidence == OFC_EVIDENCE_TILTS_ALONE);
-    assert_true(stages.solution.confidence.error_rad == 0);
+    assert_true(isnan(stages.solution.confidence.error_rad) && isnan(stages.solution.confidence.covariance[8]));
+    assert_true(isnan(stages.solution.confidence.convexity) && isnan(stages.solution.confidence.log_likelihood_margin));
     /* The border of the ball is in the shadow of one light or another: left out by the joint method, kept by the direct
      * one unless asked. */
     assert_true(joint.pixel_counts.shadowed > 0 && joint.inlier_test.shadow_planes[0].threshold > 0);
@@ -239,6 +243,42 @@ static void methods(void **state)
     assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &joint), OFC_STATUS_OK);
     assert_int_equal(joint.slant_source, OFC_SLANTS_ROOT);
     assert_true(joint.slant_rad[0] == stages.solution.slant_rad[0]);
+}
+
+static void hollow(void **state)
+{
+    (void)state;
+    const ofc_image image = ball_image();
+    for (int32_t method = OFC_ORIENTATION_JOINT; method <= OFC_ORIENTATION_DIRECT; method++) {
+        ofc_solve_params params;
+        ofc_solve_params_default(&params);
+        assert_int_equal(params.convexity, OFC_CONVEXITY_AUTO);
+        params.orientation_method = method;
+        static ofc_solution found[3];
+        memset(found, 0, sizeof found);
+        for (int i = 0; i < 3; i++) {
+            params.convexity = i;
+            assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &found[i]), OFC_STATUS_OK);
+        }
+        const ofc_solution *dome = &found[OFC_CONVEXITY_AUTO], *hollow = &found[OFC_CONVEXITY_HOLLOW];
+        assert_memory_equal(dome, &found[OFC_CONVEXITY_CONVEX], sizeof *dome);
+        for (int i = 0; i < 9; i++) {
+            assert_true(hollow->orientation.f[i] == (i % 3 < 2 ? -1 : 1) * dome->orientation.f[i]);
+            assert_true(hollow->orientation.f_inverse[i] == (i / 3 < 2 ? -1 : 1) * dome->orientation.f_inverse[i]);
+        }
+        for (int c = 0; c < 3; c++) {
+            assert_true(fabs(fabs(hollow->tilts.tilt_rad[c] - dome->tilts.tilt_rad[c]) - acos(-1)) < 1e-12);
+            assert_true(hollow->slant_rad[c] == dome->slant_rad[c]);
+        }
+        if (method == OFC_ORIENTATION_JOINT)
+            assert_true(hollow->confidence.convexity == -dome->confidence.convexity &&
+                        hollow->confidence.error_rad == dome->confidence.error_rad);
+        /* Given tilts choose by themselves. */
+        params.tilt_estimator = OFC_TILT_GIVEN;
+        memcpy(params.tilt_rad, dome->tilts.tilt_rad, sizeof params.tilt_rad);
+        assert_int_equal(ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &found[1]), OFC_STATUS_OK);
+        assert_true(found[1].tilts.tilt_rad[0] == dome->tilts.tilt_rad[0]);
+    }
 }
 
 static void exact_workspace(void **state)
@@ -372,6 +412,7 @@ int main(void)
         cmocka_unit_test(exact_workspace), cmocka_unit_test(sizes),
         cmocka_unit_test(defaults),        cmocka_unit_test(messages_and_version),
         cmocka_unit_test(threads_at_once), cmocka_unit_test(methods),
+        cmocka_unit_test(hollow),
     };
     return cmocka_run_group_tests(tests, prepare_stages, NULL);
 }

@@ -183,7 +183,7 @@ static void frames_refine_or_refuse(void **state)
     assert_int_equal(out.pass, OFC_PASS_COLORS);
     assert_int_equal(ofc_stream_drift_get(stream, &out.drift), OFC_STATUS_OK);
     assert_int_equal(out.drift.refined, 0);
-    assert_true(out.drift.inlier_ratio < 0.5 && out.drift.dispersion_ratio == 0);
+    assert_true(out.drift.inlier_ratio < 0.5 && isnan(out.drift.dispersion_ratio) && isnan(out.drift.angle_rad[2]));
     static ofc_solution before;
     before = out.solution;
     assert_int_equal(ofc_stream_solution(stream, &out.solution), OFC_STATUS_OK);
@@ -365,7 +365,7 @@ static void bad_streams(void **state)
     struct {
         ofc_stream_params params;
         ofc_status expected;
-    } bad[13];
+    } bad[14];
     size_t n = 0;
 #define BAD(status, field, value)                                                                                      \
     (bad[n].params = params, bad[n].params.field = (value), bad[n++].expected = (status))
@@ -376,6 +376,7 @@ static void bad_streams(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.orientation_method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.shadow_rejection, 3);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.norm_source, OFC_NORMS_CHANNEL_MAXIMA);
+    BAD(OFC_STATUS_INVALID_PARAMETER, solve.convexity, OFC_CONVEXITY_HOLLOW);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.tilt_estimator, OFC_TILT_CHOJNACKI);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.slant_fallback, OFC_FALLBACK_TILT_INTEGRABILITY);
     BAD(OFC_STATUS_INVALID_PARAMETER, solve.rank_threshold, 1);

@@ -257,6 +257,7 @@ void mix_solve_params(const ofc_solve_params *params)
     INTEGER(params->slant_fallback);
     INTEGER(params->orientation_method);
     INTEGER(params->norm_source);
+    INTEGER(params->convexity);
     INTEGERS(params->reserved);
 }
 

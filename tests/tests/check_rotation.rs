@@ -125,7 +125,8 @@ fn the_other_numbers_see_what_the_documentation_says() {
         let surface = |check: &Check| check.depth.expect("a surface");
         for (axis, degrees) in [(0, 25.0_f64), (1, 25.0), (2, 25.0), (2, 180.0)] {
             let found = checked(scene, solution, mat3::multiply(&scene.f, &turn(axis, degrees)));
-            let bent = surface(&found).median_angle - surface(&right).median_angle;
+            let angle = |check| surface(check).median_angle.expect("a surface");
+            let bent = angle(&found) - angle(&right);
             let depth_tilts = largest(surface(&found).tilt_differences);
             println!("{name}, {degrees} about {axis}: bent by {bent:.4}, depth tilts {depth_tilts:.4}");
             // The relit picture is the same whatever the orthogonal transformation is.

@@ -11,13 +11,13 @@ use crate::render::DepthMap;
 use crate::surface::normals::{Length, normal};
 use libm::{atan2, sqrt};
 
-/// A surface integrated from the normals, against them and the picture. All are zero where it covers no inlier.
+/// A surface integrated from the normals, against them and the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DepthCheck {
     /// Inliers that have a depth.
     pub pixels: usize,
-    /// The median angle between the surface's normals and those recovered from the colors.
-    pub median_angle: f64,
+    /// The median angle between the surface's normals and those recovered from the colors; `None` where it covers no inlier.
+    pub median_angle: Option<f64>,
     /// Pentland's tilts of the surface shaded with F; `None` where there are none.
     pub tilts: Option<Tilts>,
     /// These minus the tilts of the input, in (-pi, pi].
@@ -56,7 +56,7 @@ pub(super) fn check(
         });
     });
     let angles = workspace.get_mut(..pixels).unwrap_or_default();
-    let median_angle = kth_smallest(angles, median_rank(pixels)).map_or(0.0, f64::from);
+    let median_angle = kth_smallest(angles, median_rank(pixels)).map(f64::from);
     let tilts = pentland::tilts_of(image, surface, |window, i| mat3::apply(f, normal_at(window, i)));
     let tilt_differences = tilts.zip(input).map(|(tilts, input)| minus(tilts.tilts, input));
     DepthCheck { pixels, median_angle, tilts, tilt_differences }

@@ -39,6 +39,19 @@ pub enum NormSource {
     ChannelMaxima,
 }
 
+/// Whether the surface is a dome or a hollow, which its colors cannot tell: a surface and its twin, whose depth has the other
+/// sign, have the same colors under lights that are turned half about the line of sight.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Convexity {
+    /// Whichever of the two is more of a dome; how clear that is, the solution says.
+    #[default]
+    Auto,
+    /// The same, by the caller's word.
+    Convex,
+    /// The other one.
+    Hollow,
+}
+
 /// What to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
@@ -60,6 +73,8 @@ pub struct Params {
     pub fallback: SlantFallback,
     /// Where the lengths of F's rows come from, with the direct method. Default [`NormSource::Fit`].
     pub norms: NormSource,
+    /// Which of a surface and its twin is taken; given tilts choose by themselves. Default [`Convexity::Auto`].
+    pub convexity: Convexity,
 }
 
 impl Default for Params {
@@ -73,6 +88,7 @@ impl Default for Params {
             rank_threshold: RANK_THRESHOLD,
             fallback: SlantFallback::LeastSquares,
             norms: NormSource::Fit,
+            convexity: Convexity::Auto,
         }
     }
 }
@@ -94,6 +110,11 @@ impl Params {
     pub(crate) const fn is_joint(&self) -> bool {
         matches!(self.orientation_method, OrientationMethod::Joint)
             && !matches!(self.tilts, TiltEstimator::Given(_))
+    }
+
+    /// Whether the twin of the dome is taken.
+    pub(crate) const fn is_hollow(&self) -> bool {
+        matches!(self.convexity, Convexity::Hollow) && !matches!(self.tilts, TiltEstimator::Given(_))
     }
 
     /// Whether colors that one of the lights does not reach are left out.

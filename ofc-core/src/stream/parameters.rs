@@ -2,7 +2,7 @@
 
 use crate::color::lmeds::{self, MIN_PIXELS};
 use crate::light::tilt::TiltEstimator;
-use crate::solve::{self, NormSource, OrientationMethod, SlantFallback};
+use crate::solve::{self, Convexity, NormSource, OrientationMethod, SlantFallback};
 
 /// Whether streams do all that [`solve`](crate::solve::solve) does.
 pub const FULL: bool = cfg!(feature = "full-streams");
@@ -11,7 +11,8 @@ pub const FULL: bool = cfg!(feature = "full-streams");
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
     /// The pipeline's. `lmeds.sample_size` is how many colors the sample has room for, at least 24, here 2048 by default;
-    /// tilts are Pentland's or given, and without a root slants are refused or fitted by least squares. Unless [`FULL`], the
+    /// tilts are Pentland's or given, and without a root slants are refused or fitted by least squares; the convexity is
+    /// [`Convexity::Auto`]. Unless [`FULL`], the
     /// method is the direct one and shadows are not looked for.
     pub solve: solve::Params,
     /// Where less than this share of the usable pixels has a residual that the model accepts, in [0, 1], a frame does not
@@ -43,5 +44,6 @@ impl Params {
             && matches!(self.solve.tilts, TiltEstimator::Pentland | TiltEstimator::Given(_))
             && matches!(self.solve.fallback, SlantFallback::Refuse | SlantFallback::LeastSquares)
             && self.solve.norms == NormSource::Fit
+            && self.solve.convexity == Convexity::Auto
     }
 }

@@ -85,7 +85,8 @@ impl<P: Pixels> Problem<'_, P> {
             r_squared: 1.0 - rejection.median_residual * rejection.median_residual,
             band: rejection.band,
             coefficients: refit.coefficients,
-            covariance: [0.0; 21],
+            // Not known yet.
+            covariance: [f64::NAN; 21],
             residual_deviation: refit.residual_deviation,
             color_deviations: refit.color_deviations,
             noise_deviation: refit.noise_deviation,

@@ -61,7 +61,7 @@ pub struct Fit {
     pub coefficients: [Estimate; TERMS],
     /// What squares and products of the errors of these coefficients are expected to be: the covariance of least squares,
     /// the square of the bias that noise makes, and that of the difference from `robust`, toward which its inliers pull the fit;
-    /// on large pictures the first is the smallest. The upper triangle, row by row. Zero in a
+    /// on large pictures the first is the smallest. The upper triangle, row by row. NaN, which is not known, in a
     /// stream without the feature `full-streams`.
     pub covariance: Triangle,
     /// The standard deviation of the inliers' residuals under the reweighted fit.

@@ -1,7 +1,7 @@
 //! The transformation, how sure it is, and what decided.
 
 use super::information::trace;
-use crate::math::mat3::Mat3;
+use crate::math::mat3::{self, Mat3};
 use libm::sqrt;
 
 /// Which evidence decided.
@@ -24,7 +24,8 @@ pub struct Joint {
     pub covariance: Mat3,
     /// What decided.
     pub evidence: Evidence,
-    /// From 0 (dome and hollow fit alike) to 1 (all of the surface is a dome): how clear the choice between the twins is.
+    /// From 0 (dome and hollow fit alike) to 1 (all of the surface is a dome): how clear the choice between the twins is. The
+    /// [`Self::twin`] of a dome has the negative.
     pub convexity: f64,
     /// How much less likely the best of the candidates that are more than [`APART`](super::APART) away is: the difference of the
     /// two negative log likelihoods; infinite where there is none.
@@ -36,5 +37,18 @@ impl Joint {
     #[must_use]
     pub fn expected_error(&self) -> f64 {
         sqrt(2.0 / 3.0 * trace(&self.covariance))
+    }
+
+    /// The convex/concave twin: r1 and r2 have the other sign, and so have the entries of the covariance between them and r3.
+    #[must_use]
+    pub fn twin(&self) -> Self {
+        let ([x, y, z], [a, b, c]) = (self.rows, self.covariance);
+        let across = |[x, y, z]: [f64; 3]| [x, y, -z];
+        Self {
+            rows: [mat3::scale(x, -1.0), mat3::scale(y, -1.0), z],
+            covariance: [across(a), across(b), mat3::scale(across(c), -1.0)],
+            convexity: -self.convexity,
+            ..*self
+        }
     }
 }
