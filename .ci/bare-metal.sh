@@ -5,13 +5,13 @@
 # What the boards below need from Debian.
 board_packages=(gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm qemu-system-misc)
 
-# board NAME: sets what is special to it: `triple` and `flags` for rustc, `compiler` and `emulator` with their options,
-# `start`, the sources that come before main(), `tools`, the prefix of nm and size, and `before`, what is linked before
-# libofc.a.
+# board NAME: sets what is special to it: `triple` and `flags` for rustc, `target`, the C compiler with the options that
+# choose the processor, `runtime`, what the library takes of its runtime from elsewhere than Rust, `compiler` and `emulator`
+# with all their options, `start`, the sources that come before main(), and `tools`, the prefix of nm and size.
 board() {
-    local folder=c_examples/firmware/board function
-    start=("$folder/start.c")
-    before=()
+    local folder=c_examples/firmware/board layout
+    start=("$folder"/{start,memory}.c)
+    runtime=()
     # Inlining and aligned loops cost more flash than they save instructions; short constants may lie with the code.
     flags="-Cllvm-args=-inline-threshold=5 -Cllvm-args=-align-loops=1 -Cllvm-args=-arm-promote-constant=1"
     case $1 in
@@ -19,33 +19,33 @@ board() {
         triple=thumbv7em-none-eabihf
         flags+=" -Ctarget-cpu=cortex-m7"
         tools=arm-none-eabi
-        compiler=(arm-none-eabi-gcc -mthumb -mcpu=cortex-m7 -mfloat-abi=hard -mfpu=fpv5-d16 -T mps2.ld)
+        target=(arm-none-eabi-gcc -mthumb -mcpu=cortex-m7 -mfloat-abi=hard -mfpu=fpv5-d16)
+        layout=mps2.ld
         emulator=(qemu-system-arm -M mps2-an500)
         start+=("$folder/cortex_m.c")
         ;;
     cortex-m4f)
         triple=thumbv7em-none-eabihf
         tools=arm-none-eabi
-        compiler=(arm-none-eabi-gcc -mthumb -mcpu=cortex-m4 -mfloat-abi=hard -mfpu=fpv4-sp-d16 -T mps2.ld)
+        target=(arm-none-eabi-gcc -mthumb -mcpu=cortex-m4 -mfloat-abi=hard -mfpu=fpv4-sp-d16)
+        layout=mps2.ld
         emulator=(qemu-system-arm -M mps2-an386)
         start+=("$folder/cortex_m.c")
         # libgcc has double precision in assembler: sums and products in half the instructions, quotients in four times as
         # many, and as correctly rounded.
-        for function in dadd dsub dmul ddiv dcmpeq dcmplt dcmple dcmpge dcmpgt dcmpun i2d ui2d d2iz d2uiz f2d d2f; do
-            before+=("-Wl,-u,__aeabi_$function")
-        done
-        before+=(-lgcc)
+        runtime=(-lgcc)
         ;;
     riscv32)
         triple=riscv32imafc-unknown-none-elf
         tools=riscv64-unknown-elf
-        compiler=(riscv64-unknown-elf-gcc -march=rv32imafc_zicsr -mabi=ilp32f -T virt.ld)
+        target=(riscv64-unknown-elf-gcc -march=rv32imafc_zicsr -mabi=ilp32f)
+        layout=virt.ld
         emulator=(qemu-system-riscv32 -M virt -bios none)
         start+=("$folder/riscv.c")
         ;;
     esac
-    compiler+=(-std=c99 -Wall -Wextra -Wpedantic -Werror -ffreestanding -fno-stack-protector -ffp-contract=off
-        -fno-math-errno -fno-tree-loop-distribute-patterns -ffunction-sections -fdata-sections -Iinclude -I"$folder"
+    compiler=("${target[@]}" -T "$layout" -std=c99 -Wall -Wextra -Wpedantic -Werror -ffreestanding
+        -fno-stack-protector -ffp-contract=off -fno-math-errno -fno-tree-loop-distribute-patterns -ffunction-sections -fdata-sections -Iinclude -I"$folder"
         -nostdlib -nostartfiles -static "-Wl,--gc-sections" "-Wl,-z,noexecstack" -L"$folder")
 }
 
@@ -62,8 +62,8 @@ rust_packages() {
     done
 }
 
-# build_archive NAME TRIPLE FLAGS [FEATURE]: libofc.a by the profile `firmware`, with these flags for rustc. Sets `archive`
-# to its path.
+# build_archive NAME TRIPLE FLAGS [FEATURE]: libofc.a by the profile `firmware`, with these flags for rustc, for `target`,
+# `runtime` and `tools`. Sets `archive` to its path.
 build_archive() {
     local name=$1 triple=$2 flags=$3 features=${4-} sysroot folder=target/bare/$1
     local build=(cargo rustc --quiet --profile firmware -p ofc-ffi --lib --crate-type staticlib
@@ -76,7 +76,9 @@ build_archive() {
     else
         RUSTC_BOOTSTRAP=1 RUSTC=/usr/bin/rustc RUSTFLAGS=$flags "${build[@]}" -Zbuild-std=core
     fi
-    archive=$folder/$triple/firmware/libofc.a
+    archive=$folder/libofc.a
+    CC="${target[*]}" NM=$tools-nm OBJCOPY=$tools-objcopy AR=$tools-ar \
+        ofc-ffi/package/archive.sh "$folder/$triple/firmware/libofc.a" "$archive" "${runtime[@]}"
 }
 
 # cannot_panic PROGRAM: ends the script if the program for the board that was set last holds panic machinery.

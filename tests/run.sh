@@ -25,7 +25,7 @@ step() {
 }
 
 step "scripts"
-shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/determinism/*.sh
+shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/determinism/*.sh ofc-ffi/package/*.sh
 
 step "format and lints"
 cargo fmt --all --check

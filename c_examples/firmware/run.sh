@@ -86,7 +86,7 @@ measure() {
     local name=$1 program=$out/$1${2:+-$2} flash ram stack row stage
     board "$name"
     build_archive "$name" "$triple" "$flags" "${2-}"
-    "${compiler[@]}" -Oz "$here"/{main,scene,print}.c "${start[@]}" "${before[@]}" "$archive" -lgcc -o "$program.elf"
+    "${compiler[@]}" -Oz "$here"/{main,scene,print}.c "${start[@]}" "$archive" -lgcc -o "$program.elf"
     cannot_panic "$program.elf"
     calls_are_known "$program.elf"
     echo "== $name${2:+, $2}"

@@ -18,6 +18,7 @@ out=target/determinism
 expected=$here/digests.txt
 mkdir -p "$out"
 portable=("$here"/{main,digest,digest_structs,inputs,stages_pure,stages_render,stages_fit,stages_solve,stages_depth,stages_stream}.c)
+memory=c_examples/firmware/board/memory.c
 options=(-O2 -std=c99 -Wall -Wextra -Wpedantic -Werror -ffreestanding -fno-stack-protector -ffp-contract=off
     -fno-tree-loop-distribute-patterns -Iinclude -Ic_examples/firmware/board -nostdlib -static "-Wl,--gc-sections" "-Wl,-z,noexecstack")
 failed=()
@@ -44,7 +45,7 @@ host() {
     local name=$1 flags=$2 library=$out/$1-library
     shift 2
     RUSTFLAGS=$flags cargo build --quiet -p ofc-ffi --target-dir "$library" "$@"
-    gcc "${options[@]}" -no-pie "${portable[@]}" "$here"/{linux,memory}.c "$library"/*/libofc.a -o "$out/$name"
+    gcc "${options[@]}" -no-pie "${portable[@]}" "$here/linux.c" "$memory" "$library"/*/libofc.a -o "$out/$name"
 }
 
 host x86-64-debug ""
@@ -66,18 +67,20 @@ fi
 for name in cortex-m4f cortex-m7 riscv32; do
     board "$name"
     build_archive "$name" "$triple" "$flags" full-streams
-    "${compiler[@]}" -O2 "${portable[@]}" "${start[@]}" "${before[@]}" "$archive" -lgcc -o "$out/$name"
+    "${compiler[@]}" -O2 "${portable[@]}" "${start[@]}" "$archive" -lgcc -o "$out/$name"
     cannot_panic "$out/$name"
     compare "$name" emulate "$out/$name"
 done
 
+tools=aarch64-linux-gnu target=(aarch64-linux-gnu-gcc) runtime=()
 build_archive aarch64 aarch64-unknown-none "" full-streams
-aarch64-linux-gnu-gcc "${options[@]}" "${portable[@]}" "$here/linux.c" "$archive" -o "$out/aarch64"
+"${target[@]}" "${options[@]}" "${portable[@]}" "$here/linux.c" "$memory" "$archive" -o "$out/aarch64"
 compare aarch64 qemu-aarch64 "$out/aarch64"
 
+tools=arm-none-eabi
+target=(arm-none-eabi-gcc -marm -mbig-endian -mcpu=cortex-r5 -mfloat-abi=hard -mfpu=vfpv3-d16)
 build_archive big-endian-arm armebv7r-none-eabihf "" full-streams
-arm-none-eabi-gcc "${options[@]}" -marm -mbig-endian -mcpu=cortex-r5 -mfloat-abi=hard -mfpu=vfpv3-d16 "-Wl,--be8" \
-    "${portable[@]}" "$here/linux.c" "$archive" -lgcc -o "$out/big-endian-arm"
+"${target[@]}" "${options[@]}" "-Wl,--be8" "${portable[@]}" "$here/linux.c" "$memory" "$archive" -lgcc -o "$out/big-endian-arm"
 compare big-endian-arm qemu-armeb "$out/big-endian-arm"
 
 [ ${#failed[@]} -eq 0 ] || { echo "determinism: ${failed[*]}" >&2; exit 1; }

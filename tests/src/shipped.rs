@@ -13,7 +13,7 @@ pub fn root() -> PathBuf {
 /// What cargo is told to build the library: README's command.
 pub const BUILD: &str = "build --release -p ofc-ffi";
 
-/// The folder of `libofc.so` and `libofc.a`.
+/// The folder of `libofc.so`, and of the `libofc.a` that [`archive`] is made from.
 ///
 /// # Panics
 /// When they cannot be built.
@@ -26,6 +26,21 @@ pub fn folder() -> &'static Path {
         build.args(BUILD.split_whitespace()).args(["--quiet", "--target-dir", "target"]).current_dir(root());
         assert!(build.status().expect("cargo runs").success(), "cargo {BUILD}");
         root().join("target/release")
+    })
+}
+
+/// The archive as it is installed: nothing but `ofc_*` is defined in it.
+///
+/// # Panics
+/// When it cannot be made.
+pub fn archive() -> &'static str {
+    static ARCHIVE: OnceLock<String> = OnceLock::new();
+    ARCHIVE.get_or_init(|| {
+        let script = root().join("ofc-ffi/package/archive.sh").to_string_lossy().into_owned();
+        let raw = folder().join("libofc.a").to_string_lossy().into_owned();
+        let archive = root().join("target/shipped/libofc.a").to_string_lossy().into_owned();
+        let _ = stdout(&script, &[&raw, &archive]);
+        archive
     })
 }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// The linked program.
 fn program(name: &str, definitions: &[&str]) -> String {
-    let (root, archive) = (root(), folder().join("libofc.a"));
+    let root = root();
     let path = |relative: &str| root.join(relative).to_string_lossy().into_owned();
     let mut sources: Vec<String> = std::fs::read_dir(root.join("tests/determinism"))
         .expect("a folder")
@@ -16,17 +16,17 @@ fn program(name: &str, definitions: &[&str]) -> String {
         .filter(|file| Path::new(file).extension().is_some_and(|extension| extension == "c"))
         .collect();
     sources.sort();
+    sources.push(path("c_examples/firmware/board/memory.c"));
     let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name).to_string_lossy().into_owned();
     let include = format!("-I{}", path("include"));
     let board = format!("-I{}", path("c_examples/firmware/board"));
-    let archive = archive.to_string_lossy().into_owned();
     let mut arguments =
         vec!["-std=c99", "-O2", "-ffreestanding", "-fno-stack-protector", "-ffp-contract=off"];
     arguments.extend(["-fno-tree-loop-distribute-patterns", "-nostdlib", "-static", "-no-pie"]);
     arguments.extend(["-Wl,--gc-sections", &include, &board]);
     arguments.extend(definitions);
     arguments.extend(sources.iter().map(String::as_str));
-    arguments.extend([archive.as_str(), "-o", &program]);
+    arguments.extend([shipped::archive(), "-o", &program]);
     let _ = shipped::stdout("gcc", &arguments);
     program
 }

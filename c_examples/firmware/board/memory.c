@@ -1,4 +1,4 @@
-/* What a compiler may call although nobody wrote it. On bare-metal targets libofc.a brings these along. */
+/* What a compiler may call although nobody wrote it; a C library has these. libofc.a brings its own along, for itself. */
 #include <stddef.h>
 #include <stdint.h>
 
