@@ -38,7 +38,7 @@ board() {
     riscv32)
         triple=riscv32imafc-unknown-none-elf
         tools=riscv64-unknown-elf
-        target=(riscv64-unknown-elf-gcc -march=rv32imafc_zicsr -mabi=ilp32f)
+        target=(riscv64-unknown-elf-gcc -march=rv32imafc -misa-spec=2.2 -mabi=ilp32f)
         layout=virt.ld
         emulator=(qemu-system-riscv32 -M virt -bios none)
         start+=("$folder/riscv.c")
@@ -63,7 +63,7 @@ rust_packages() {
 }
 
 # build_archive NAME TRIPLE FLAGS [FEATURE]: libofc.a by the profile `firmware`, with these flags for rustc, for `target`,
-# `runtime` and `tools`. Sets `archive` to its path.
+# `runtime` and `tools`. Sets `archive` to its path, and `raw` to that of the one from cargo.
 build_archive() {
     local name=$1 triple=$2 flags=$3 features=${4-} sysroot folder=target/bare/$1
     local build=(cargo rustc --quiet --profile firmware -p ofc-ffi --lib --crate-type staticlib
@@ -76,9 +76,9 @@ build_archive() {
     else
         RUSTC_BOOTSTRAP=1 RUSTC=/usr/bin/rustc RUSTFLAGS=$flags "${build[@]}" -Zbuild-std=core
     fi
-    archive=$folder/libofc.a
+    raw=$folder/$triple/firmware/libofc.a archive=$folder/libofc.a
     CC="${target[*]}" NM=$tools-nm OBJCOPY=$tools-objcopy AR=$tools-ar \
-        ofc-ffi/package/archive.sh "$folder/$triple/firmware/libofc.a" "$archive" "${runtime[@]}"
+        ofc-ffi/package/archive.sh "$raw" "$archive" "${runtime[@]}"
 }
 
 # cannot_panic PROGRAM: ends the script if the program for the board that was set last holds panic machinery.

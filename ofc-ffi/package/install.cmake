@@ -2,7 +2,7 @@
 
 include(CMakePackageConfigHelpers)
 
-install(FILES include/ofc.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT development)
+install(FILES include/ofc.h include/ofc.hpp DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT development)
 install(FILES "${ofc_archive}" DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
 if(ofc_shared)
   install(FILES "${ofc_shared}" "${ofc_lib}/libofc.so.${ofc_abi}"
