@@ -25,7 +25,7 @@ step() {
 }
 
 step "scripts"
-shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/determinism/*.sh ofc-ffi/package/*.sh
+shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/determinism/*.sh tests/newcomer/run.sh ofc-ffi/package/*.sh
 
 step "format and lints"
 cargo fmt --all --check
@@ -56,6 +56,9 @@ step "the same bits on every target"
 
 step "examples"
 ./tests/examples.sh
+
+step "newcomers"
+./tests/newcomer/run.sh
 
 step
 printf '\nall tests passed in %d s\n' "$SECONDS"

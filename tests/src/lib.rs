@@ -18,3 +18,8 @@ pub mod shipped;
 pub mod slant_oracle;
 pub mod solved;
 pub mod tolerances;
+
+/// README's program in Rust compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;
