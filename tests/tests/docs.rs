@@ -65,7 +65,9 @@ fn mistakes(text: &str, folder: &Path) -> Vec<String> {
 #[test]
 fn documents_agree_with_the_code() {
     let root = root();
-    let mut documents = vec![root.join("README.md"), root.join("c_examples/README.md")];
+    let mut documents: Vec<_> = ["README.md", "CONTRIBUTING.md", "SECURITY.md", "c_examples/README.md"]
+        .map(|file| root.join(file))
+        .into();
     let docs = std::fs::read_dir(root.join("docs")).expect("docs");
     documents.extend(docs.map(|entry| entry.expect("an entry").path()).filter(|path| path.is_file()));
     assert!(documents.len() >= 6);
@@ -91,6 +93,12 @@ fn the_table_from_paper_to_code_names_files_that_exist() {
         count += 1;
     }
     assert!(count > 30, "{count}");
+}
+
+#[test]
+fn what_is_cited_is_this_version() {
+    let citation = read(&root().join("CITATION.cff"));
+    assert!(citation.contains(concat!("\nversion: ", env!("CARGO_PKG_VERSION"), "\n")));
 }
 
 #[test]

@@ -39,6 +39,7 @@ fn compile(compiler: &str, file: &Path, more: &[&str]) -> String {
 }
 
 /// A ball under three lights, in RGB.
+#[expect(clippy::cast_sign_loss, reason = "colors are not negative")]
 fn ball() -> Vec<u8> {
     const F: [[f64; 3]; 3] = [[110.0, 15.0, 95.0], [-65.0, 90.0, 100.0], [-40.0, -95.0, 90.0]];
     let pixel = |i: usize| {
