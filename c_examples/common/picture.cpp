@@ -12,33 +12,10 @@ std::string size_text(cv::Size size)
     return std::to_string(size.width) + " x " + std::to_string(size.height);
 }
 
-// The OFC_PIXEL_* of a Mat, or 0.
-ofc_pixel_format format_of(const cv::Mat &pixels, bool planes)
+// Whether ofc has a format for the samples of a Mat.
+bool is_known(const cv::Mat &pixels)
 {
-    int samples = 0;
-    switch (pixels.depth()) {
-    case CV_8U:
-        samples = OFC_PIXEL_RGB8;
-        break;
-    case CV_16U:
-        samples = OFC_PIXEL_RGB16;
-        break;
-    case CV_32F:
-        samples = OFC_PIXEL_RGB32F;
-        break;
-    default:
-        return 0;
-    }
-    if (planes)
-        return samples + (OFC_PIXEL_PLANES8 - OFC_PIXEL_RGB8);
-    switch (pixels.channels()) {
-    case 3:
-        return samples + (OFC_PIXEL_BGR8 - OFC_PIXEL_RGB8);
-    case 4:
-        return samples + (OFC_PIXEL_BGRA8 - OFC_PIXEL_RGB8);
-    default:
-        return 0;
-    }
+    return pixels.depth() == CV_8U || pixels.depth() == CV_16U || pixels.depth() == CV_32F;
 }
 
 // imread takes a file's channels 0, 1, 2 for r, g, b and swaps them.
@@ -61,17 +38,7 @@ cv::Mat read_image(const std::string &path, int flags)
 
 ofc_image Picture::view() const
 {
-    ofc_image image = {};
-    image.pixels = pixels.data;
-    image.width = pixels.cols;
-    image.height = pixels.rows;
-    image.row_stride_bytes = pixels.step; // not cols: rows may be padded, or belong to a larger Mat
-    image.format = format_of(pixels, !green.empty());
-    image.green_plane = green.data;
-    image.blue_plane = blue.data;
-    image.mask = mask.data;
-    image.mask_stride_bytes = mask.empty() ? 0 : mask.step[0];
-    return image;
+    return green.empty() ? ofc::opencv::image(pixels, mask) : ofc::opencv::planes(pixels, green, blue, mask);
 }
 
 cv::Mat Picture::channel(int index) const
@@ -101,7 +68,7 @@ Picture read_picture(const std::string &path)
     picture.pixels = read_image(path, cv::IMREAD_UNCHANGED);
     if (picture.pixels.channels() < 3)
         throw UsageError(path + " is grayscale: ofc needs a color picture, or three grayscale ones with --planes");
-    if (format_of(picture.pixels, false) == 0)
+    if (!is_known(picture.pixels))
         throw UsageError(path + " is neither of 8 nor 16 bits nor of 32-bit floats a channel");
     return picture;
 }
@@ -120,7 +87,7 @@ Picture read_planes(const std::string &red, const std::string &green, const std:
         if (other.size() != picture.pixels.size() || other.type() != picture.pixels.type())
             throw UsageError("the three planes differ in size or depth: " + size_text(picture.pixels.size()) +
                              " and " + size_text(other.size()));
-    if (format_of(picture.pixels, true) == 0)
+    if (!is_known(picture.pixels))
         throw UsageError(red + " is neither of 8 nor 16 bits nor of 32-bit floats");
     return picture;
 }
@@ -185,19 +152,6 @@ void write_tiff(const std::string &path, const cv::Mat &floats)
     // programs read.
     constexpr int no_compression = 1;
     write_image(path, floats, {cv::IMWRITE_TIFF_COMPRESSION, no_compression});
-}
-
-cv::Mat normal_map(const cv::Mat &normals)
-{
-    cv::Mat map = cv::Mat::zeros(normals.size(), CV_8UC3);
-    for (int y = 0; y < normals.rows; y++)
-        for (int x = 0; x < normals.cols; x++) {
-            const cv::Vec3f n = normals.at<cv::Vec3f>(y, x);
-            if (n != cv::Vec3f())
-                for (int i = 0; i < 3; i++)
-                    map.at<cv::Vec3b>(y, x)[2 - i] = cv::saturate_cast<uchar>((n[i] + 1) * 127.5F);
-        }
-    return map;
 }
 
 cv::Mat shade(const cv::Mat &normals, const cv::Vec3d &light)

@@ -3,8 +3,10 @@
 
 #include "common/program.hpp"
 
-#include <ofc.h>
+// OpenCV first: then ofc.hpp knows cv::Mat.
 #include <opencv2/core.hpp>
+
+#include <ofc.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,8 +56,7 @@ cv::Mat read_normal_map(const std::string &path);
 // Median angle over the pixels where both have a normal; nothing where there is no such pixel.
 std::optional<double> median_angle_deg(const cv::Mat &normals, const cv::Mat &truth);
 
-// The usual 8-bit colors of a normal map: (n + 1) / 2 in r, g, b for x right, y up, z out; black without a normal.
-cv::Mat normal_map(const cv::Mat &normals);
+using ofc::opencv::normal_map;
 
 // Brightness under one white light from that direction, 8 bits.
 cv::Mat shade(const cv::Mat &normals, const cv::Vec3d &light);

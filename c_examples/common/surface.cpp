@@ -1,7 +1,6 @@
 #include "common/surface.hpp"
 
 #include "common/picture.hpp"
-#include "common/workspace.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -23,22 +22,20 @@ ofc_depth_map depth_map_of(const cv::Mat &depth, double pixel_pitch, const cv::M
 
 Surface integrate(const cv::Mat &normals, const cv::Mat &mask, const ofc_depth_params &params, const cv::Mat &known)
 {
-    ofc_depth_input input = {};
-    input.normals = normals.ptr<float>();
-    input.normals_stride_bytes = normals.step;
-    input.mask = mask.data;
-    input.mask_stride_bytes = mask.empty() ? 0 : mask.step[0];
-    input.prior = known.empty() ? nullptr : known.ptr<float>();
-    input.prior_stride_bytes = known.empty() ? 0 : known.step[0];
-    input.width = normals.cols;
-    input.height = normals.rows;
+    using ofc::opencv::view;
+    ofc_depth_input input = ofc::depth_input(view<const float, 3>(normals), view<const uint8_t>(mask));
+    const ofc::View<const float> prior = view<const float>(known);
+    input.prior = prior.data;
+    input.prior_stride_bytes = prior.stride_bytes;
     Surface surface;
     surface.params = params;
     surface.depth = cv::Mat(normals.size(), CV_32F, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
-    Workspace workspace(ofc_depth_workspace_size(input.width, input.height));
+    const std::size_t bytes = ofc_depth_workspace_size(input.width, input.height);
+    ofc::Workspace workspace;
+    void *const memory = workspace.get(bytes);
     const auto start = std::chrono::steady_clock::now();
-    surface.status = ofc_depth_integrate(&input, &params, workspace.data(), workspace.bytes(), surface.depth.ptr<float>(),
-                                         surface.depth.step, &surface.result);
+    surface.status = ofc_depth_integrate(&input, &params, memory, bytes, surface.depth.ptr<float>(), surface.depth.step,
+                                         &surface.result);
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     surface.milliseconds = elapsed.count();
     return surface;
