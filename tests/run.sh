@@ -32,6 +32,8 @@ cargo fmt --all --check
 cargo clippy --quiet --workspace --all-targets -- -D warnings
 # Without the features that the tests ask for.
 cargo clippy --quiet -p ofc-core -- -D warnings
+# As the registry would get it.
+cargo package --quiet --allow-dirty --no-verify -p ofc-core
 RUSTDOCFLAGS="-D warnings" cargo doc --quiet --no-deps -p ofc-core -p ofc-ffi --features ofc-core/full-streams
 
 step "Rust tests"
