@@ -135,6 +135,29 @@ pub const fn workspace_len(pixels: usize) -> usize {
 ///
 /// # Scratch
 /// [`workspace_len`] `f32`, two a pixel; what they hold before does not matter.
+///
+/// # Example
+/// ```
+/// use ofc_core::check::{check, workspace_len};
+/// # use ofc_core::{Image, Order, Params, Sample, solve};
+/// # let f = [[110.0, 15.0, 95.0], [-65.0, 90.0, 100.0], [-40.0, -95.0, 90.0]];
+/// # let pixel = |i: usize| {
+/// #     let (x, y) = (((i % 96) as f64 - 47.5) / 60.0, (47.5 - (i / 96) as f64) / 60.0);
+/// #     let n = [x, y, (1.0 - x * x - y * y).max(0.0).sqrt()];
+/// #     f.map(|row: [f64; 3]| row.iter().zip(n).map(|(f, n)| f * n).sum::<f64>().max(0.0).round() as u8)
+/// # };
+/// # let pixels: Vec<u8> = (0..96 * 96).flat_map(pixel).collect();
+/// # let image = Image::interleaved(&pixels, 96, 96, 3 * 96, Sample::U8, Order::Rgb).unwrap();
+/// # let params = Params::default();
+/// # let mut workspace = vec![0.0; solve::workspace_len(96 * 96, params.lmeds.sample_size)];
+/// // A ball of 96 x 96 pixels, whose rim one of the lights does not reach.
+/// let solution = solve(&image, &params, &mut workspace).unwrap();
+/// let orientation = &solution.choice.as_ref().expect("F").orientation;
+/// let coefficients = &solution.fit.as_ref().expect("a fit").coefficients;
+/// let mut workspace = vec![0.0; workspace_len(96 * 96)];
+/// let checked = check(&image, &solution.inliers, orientation, coefficients, None, &mut workspace).unwrap();
+/// assert!(checked.correlations.iter().all(|correlation| *correlation > 0.999));
+/// ```
 pub fn check(
     image: &Image,
     inliers: &Inliers,

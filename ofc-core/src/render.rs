@@ -124,6 +124,25 @@ pub struct Rendering {
 ///
 /// # Scratch
 /// None: a first pass finds the largest modulus, a second one writes. Stack below 3 KiB.
+///
+/// # Example
+/// ```
+/// use ofc_core::render::{Canvas, DepthMap, Lights, Outputs, Params, render};
+/// use ofc_core::{Order, Sample};
+///
+/// // A dome, under a red light from the camera, a green one from the right and a blue one from above.
+/// let depth = |i: usize| 30.0 - 0.01 * (((i % 64) as f32 - 31.5).powi(2) + ((i / 64) as f32 - 31.5).powi(2));
+/// let depths: Vec<u8> = (0..64 * 64).flat_map(|i| depth(i).to_ne_bytes()).collect();
+/// let surface = DepthMap::new(&depths, 64, 64, 4 * 64, 1.0).unwrap();
+/// let (a, b) = ([0.0, 0.0, 1.0, 0.6, 0.0, 0.8, 0.0, 0.6, 0.8], [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
+/// let lights = Lights::new(&a, &b).unwrap();
+///
+/// let mut pixels = vec![0; 3 * 64 * 64];
+/// let picture = Canvas::new(&mut pixels, 64, 64, 3 * 64, Sample::U8, Order::Rgb).unwrap();
+/// render(&surface, &lights, &Params::default(), Outputs { picture, seen: None, normals: None }).unwrap();
+/// let [red, green, blue] = [0, 1, 2].map(|channel| pixels[3 * (64 * 32 + 60) + channel]);
+/// assert!(green > red && red > blue); // on the right
+/// ```
 pub fn render(
     depth: &DepthMap,
     lights: &Lights,
