@@ -102,8 +102,8 @@
 //! | \[26\] Wolff | departure from the matte model toward grazing views | [`surface::wolff`](mod@surface::wolff) | `surface/wolff.rs` |
 //! | \[14\] Kontsevich et al. | regions of one material | [`color::segment`](mod@color::segment) | `color/segment.rs` |
 //!
-//! Joint orientation, shadows and uncertainty are not in the paper: `docs/` derives them, and [`orientation::joint`],
-//! [`color::shadows`] and [`surface::uncertainty`] compute them.
+//! Joint orientation, shadows, uneven paint and uncertainty are not in the paper: `docs/` derives them, and
+//! [`orientation::joint`], [`color::shadows`], [`color::paint`] and [`surface::uncertainty`] compute them.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -6,6 +6,7 @@ pub mod angle;
 pub mod arena;
 pub mod mat3;
 pub mod mat6;
+pub mod pencil;
 pub mod rng;
 pub mod select;
 pub mod student_t;

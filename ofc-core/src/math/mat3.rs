@@ -81,7 +81,7 @@ pub fn max_abs(a: &Mat3) -> f64 {
 }
 
 /// Cosine and sine of the rotation that makes the 2x2 symmetric matrix ((app, apq), (apq, aqq)) diagonal.
-fn rotation(app: f64, apq: f64, aqq: f64) -> (f64, f64) {
+pub(super) fn rotation(app: f64, apq: f64, aqq: f64) -> (f64, f64) {
     if apq == 0.0 {
         return (1.0, 0.0);
     }

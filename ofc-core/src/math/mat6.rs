@@ -156,7 +156,7 @@ pub fn inverse(factor: &Mat6) -> Mat6 {
 }
 
 /// Solves L x = b in place.
-fn forward(factor: &Mat6, b: &mut [f64; N]) {
+pub fn forward(factor: &Mat6, b: &mut [f64; N]) {
     for (i, column) in factor.iter().enumerate() {
         let (Some(&pivot), Some(x)) = (column.get(i), b.get_mut(i)) else { return };
         *x /= pivot;
@@ -168,7 +168,7 @@ fn forward(factor: &Mat6, b: &mut [f64; N]) {
 }
 
 /// Solves Lᵀ x = b in place.
-fn backward(factor: &Mat6, b: &mut [f64; N]) {
+pub fn backward(factor: &Mat6, b: &mut [f64; N]) {
     for (i, column) in factor.iter().enumerate().rev() {
         let known = dot(column.get(i + 1..).unwrap_or_default(), b.get(i + 1..).unwrap_or_default());
         let (Some(&pivot), Some(x)) = (column.get(i), b.get_mut(i)) else { return };

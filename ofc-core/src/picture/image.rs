@@ -105,6 +105,25 @@ impl<'a> Image<'a> {
         Some(Self { channels, height: 1, mask, ..*self })
     }
 
+    /// The `width` x `height` pixels from column `x` and row `y` on, with their mask, as a picture; `None` where they are none
+    /// or not all within this one.
+    #[must_use]
+    pub fn crop(&self, [x, y]: [usize; 2], [width, height]: [usize; 2]) -> Option<Self> {
+        let fits = |start: usize, len: usize, all: usize| {
+            len > 0 && start.checked_add(len).is_some_and(|end| end <= all)
+        };
+        if !(fits(x, width, self.width) && fits(y, height, self.height)) {
+            return None;
+        }
+        let start = y * self.row_stride + x * self.pixel_stride;
+        let channels = self.channels.map(|channel| channel.get(start..).unwrap_or_default());
+        let mask = self.mask.map(|mask| Mask {
+            bytes: mask.bytes.get(y * mask.row_stride + x..).unwrap_or_default(),
+            row_stride: mask.row_stride,
+        });
+        Some(Self { channels, width, height, mask, ..*self })
+    }
+
     /// Reads up to [`WINDOW`] pixels of row `y` from column `x` on, fewer at the end of the row and none beyond the
     /// picture.
     pub fn read(&self, x: usize, y: usize, window: &mut Window) {
@@ -180,5 +199,41 @@ fn read_samples<const N: usize>(bytes: &[u8], stride: usize, out: &mut [f32], lo
         if let Some(&sample) = pixel.first_chunk::<N>() {
             *out = load(sample);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    #[test]
+    fn a_part_is_what_the_whole_holds_there() {
+        let bytes: Vec<u8> = (0..7 * 40).collect::<Vec<usize>>().iter().map(|&i| i as u8).collect();
+        let mask: Vec<u8> = (0..70).map(|i| u8::from(i % 3 > 0)).collect();
+        let image = Image::interleaved(&bytes, 10, 7, 40, Sample::U8, Order::Bgra)
+            .and_then(|image| image.with_mask(&mask, 10))
+            .unwrap();
+        let part = image.crop([4, 2], [5, 3]).unwrap();
+        assert_eq!((part.width(), part.height()), (5, 3));
+        let (mut whole, mut own) = (Window::new(), Window::new());
+        for row in 0..3 {
+            image.read(4, 2 + row, &mut whole);
+            part.read(0, row, &mut own);
+            assert_eq!((own.len, own.masked), (5, whole.masked & 0b1_1111));
+            for i in 0..5 {
+                assert_eq!(own.pixel(i), whole.pixel(i));
+            }
+        }
+        for (corner, size) in [
+            ([6, 2], [5, 3]),
+            ([4, 5], [5, 3]),
+            ([4, 2], [0, 3]),
+            ([4, 2], [5, 0]),
+            ([usize::MAX, 2], [5, 3]),
+        ] {
+            assert!(image.crop(corner, size).is_none());
+        }
+        assert!(image.crop([0, 0], [10, 7]).is_some());
     }
 }
