@@ -577,15 +577,17 @@ typedef int32_t ofc_depth_method;
 /// The method of the paper (section 5): least squares over the whole rectangle, flat (p = q = 0) outside of the mask
 /// and at unusable pixels. The pixels of the mask have a depth.
 #define OFC_DEPTH_PAPER 1
-/// Harris's coupled depth/slope model: smooth slopes are fitted to the usable pixels and bridge the others, and depth
-/// is fitted to these slopes over the whole mask.
+/// Harris's coupled depth/slope model over the whole mask: depth and smooth slopes that fit each other, and the usable
+/// pixels, bridge the others. The squared misfit of depth and slopes along an edge weighs 10 times `smoothness`, as does
+/// the equation of an edge to which `prior_weight` refers.
 #define OFC_DEPTH_COUPLED 2
 
 /// How ofc_depth_integrate() works. Set by ofc_depth_params_default().
 struct ofc_depth_params {
     /// Width and height of a pixel on the surface, in the unit of the depth: in [1e-30, 1e30]. Default 1.
     double pixel_pitch;
-    /// The residual to reach, relative to the norm of the right-hand side: in [1e-6, 1]. Default 1e-4.
+    /// The residual to reach, relative to the norm of the right-hand side: in [1e-6, 1]. Default 1e-4. For
+    /// OFC_DEPTH_COUPLED, also how far the depth may still have to go, relative to depth and slopes.
     double tolerance;
     /// Normals with n3 / |n| below this lose weight with its square, and their slope stops growing: in [0.001, 1].
     /// Default 0.05, for slopes up to 20.
@@ -597,7 +599,8 @@ struct ofc_depth_params {
     /// squared difference of a pixel's slope from its data, in [1e-3, 1e3]. Default 0.1.
     double smoothness;
     ofc_depth_method method; ///< One of OFC_DEPTH_*. Default OFC_DEPTH_POISSON.
-    /// At most so many multigrid cycles for each system of equations, at least 1; 4 to 15 are usual. Default 1000.
+    /// At most so many multigrid cycles for each system of equations, at least 1; 4 to 15 are usual, 6 to 25 for
+    /// OFC_DEPTH_COUPLED. Default 1000.
     int32_t max_cycles;
     uint32_t reserved[4]; ///< Must be zero.
 };
@@ -614,8 +617,11 @@ struct ofc_depth_result {
     int32_t regions;
     int32_t pixel_count;    ///< How many pixels have a depth.
     int32_t excluded_count; ///< How many pixels of the mask were unusable.
-    int32_t converged;      ///< 1 when the tolerance was reached, or what floats can hold; 0 otherwise.
-    uint32_t reserved;      ///< Zero.
+    /// 1 when the tolerance was reached, or what floats can hold; 0 otherwise. For OFC_DEPTH_COUPLED, the changes of
+    /// depth that are still to come, as the last ones tell, are below the tolerance too: gaps are soft, and a residual
+    /// would not show them.
+    int32_t converged;
+    uint32_t reserved; ///< Zero.
 };
 
 /* =====================================================================================================================
@@ -1636,9 +1642,9 @@ const char *ofc_version_string(void);
                OFC_LMEDS_WORKSPACE_SIZE_FOR(width, height, sample_size))
 /// What ofc_depth_workspace_size() returns.
 #define OFC_DEPTH_WORKSPACE_SIZE(width, height)                                                                        \
-    ((4 * ((OFC_SIZE(height) + 2) * (OFC_SIZE(width) + 1) + 1) +                                                       \
-      5 * (OFC_PIXELS(width, height) / 3 + 3 * OFC_SIZE(width) + 2 * OFC_SIZE(height) + 180) +                         \
-      4 * (2 * OFC_SIZE(height) + 30) + 4 * (OFC_SIZE(width) + 2)) * 4)
+    ((3 * ((OFC_SIZE(height) + 2) * (OFC_SIZE(width) + 1) + 1) +                                                       \
+      8 * (OFC_PIXELS(width, height) / 3 + 3 * OFC_SIZE(width) + 2 * OFC_SIZE(height) + 180) +                         \
+      4 * (2 * OFC_SIZE(height) + 30) + 7 * (OFC_SIZE(width) + 2)) * 4)
 /// What ofc_lmeds_workspace_size() returns for the default sample_size.
 #define OFC_LMEDS_WORKSPACE_SIZE(width, height) OFC_LMEDS_WORKSPACE_SIZE_FOR(width, height, 10000)
 /// What ofc_lmeds_workspace_size() returns for this sample_size.

@@ -12,8 +12,9 @@ pub const OFC_DEPTH_POISSON: i32 = 0;
 /// The method of the paper (section 5): least squares over the whole rectangle, flat (p = q = 0) outside of the mask
 /// and at unusable pixels. The pixels of the mask have a depth.
 pub const OFC_DEPTH_PAPER: i32 = 1;
-/// Harris's coupled depth/slope model: smooth slopes are fitted to the usable pixels and bridge the others, and depth
-/// is fitted to these slopes over the whole mask.
+/// Harris's coupled depth/slope model over the whole mask: depth and smooth slopes that fit each other, and the usable
+/// pixels, bridge the others. The squared misfit of depth and slopes along an edge weighs 10 times `smoothness`, as does
+/// the equation of an edge to which `prior_weight` refers.
 pub const OFC_DEPTH_COUPLED: i32 = 2;
 
 /// What ofc_depth_integrate() integrates. Initialize the whole struct: fields that are not set must be zero.
@@ -60,7 +61,8 @@ pub struct ofc_depth_input {
 pub struct ofc_depth_params {
     /// Width and height of a pixel on the surface, in the unit of the depth: in [1e-30, 1e30]. Default 1.
     pub pixel_pitch: f64,
-    /// The residual to reach, relative to the norm of the right-hand side: in [1e-6, 1]. Default 1e-4.
+    /// The residual to reach, relative to the norm of the right-hand side: in [1e-6, 1]. Default 1e-4. For
+    /// OFC_DEPTH_COUPLED, also how far the depth may still have to go, relative to depth and slopes.
     pub tolerance: f64,
     /// Normals with n3 / |n| below this lose weight with its square, and their slope stops growing: in [0.001, 1].
     /// Default 0.05, for slopes up to 20.
@@ -73,7 +75,8 @@ pub struct ofc_depth_params {
     pub smoothness: f64,
     /// One of OFC_DEPTH_*. Default OFC_DEPTH_POISSON.
     pub method: ofc_depth_method,
-    /// At most so many multigrid cycles for each system of equations, at least 1; 4 to 15 are usual. Default 1000.
+    /// At most so many multigrid cycles for each system of equations, at least 1; 4 to 15 are usual, 6 to 25 for
+    /// OFC_DEPTH_COUPLED. Default 1000.
     pub max_cycles: i32,
     /// Must be zero.
     pub reserved: [u32; 4],
@@ -95,7 +98,9 @@ pub struct ofc_depth_result {
     pub pixel_count: i32,
     /// How many pixels of the mask were unusable.
     pub excluded_count: i32,
-    /// 1 when the tolerance was reached, or what floats can hold; 0 otherwise.
+    /// 1 when the tolerance was reached, or what floats can hold; 0 otherwise. For OFC_DEPTH_COUPLED, the changes of
+    /// depth that are still to come, as the last ones tell, are below the tolerance too: gaps are soft, and a residual
+    /// would not show them.
     pub converged: i32,
     /// Zero.
     pub reserved: u32,

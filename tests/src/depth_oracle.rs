@@ -166,8 +166,9 @@ pub fn poisson(field: &Field, prior: Option<(&[f64], f64)>) -> Vec<f64> {
     free_of_means(field, system.solve(&right), prior.map(|(prior, _)| prior), &counted)
 }
 
-/// Smooth slopes over the pixels of `domain` from data of `field.weight`, then [`poisson`] on these.
-pub fn coupled(field: &Field, domain: &[bool], smoothness: f64) -> Vec<f64> {
+/// Slopes over the pixels of `domain` from data of `field.weight`, p and q smoothed each for itself, then [`poisson`] on
+/// these: what the coupled model is without the coupling.
+pub fn uncoupled(field: &Field, domain: &[bool], smoothness: f64) -> Vec<f64> {
     let inside = |i: usize| if domain[i] { 1.0 } else { 0.0 };
     let mut system = System { edges: Vec::new(), mass: Vec::new() };
     for pairs in neighbors(field.width, field.height) {
@@ -189,4 +190,97 @@ pub fn coupled(field: &Field, domain: &[bool], smoothness: f64) -> Vec<f64> {
         ..*field
     };
     poisson(&smooth_field, None)
+}
+
+/// One square in an energy: `weight * (sum of factor * unknown - wanted)^2`.
+struct Square {
+    weight: f64,
+    sum: Vec<(usize, f64)>,
+    wanted: f64,
+}
+
+/// The unknowns that minimize a sum of squares, by conjugate gradients on the normal equations, square after square.
+fn minimize(unknowns: usize, squares: &[Square]) -> Vec<f64> {
+    let value = |square: &Square, x: &[f64]| square.sum.iter().map(|&(i, factor)| factor * x[i]).sum::<f64>();
+    let spread = |out: &mut [f64], square: &Square, value: f64| {
+        for &(i, factor) in &square.sum {
+            out[i] += square.weight * factor * value;
+        }
+    };
+    let mut diagonal = vec![0.0; unknowns];
+    let mut residual = vec![0.0; unknowns];
+    for square in squares {
+        for &(i, factor) in &square.sum {
+            diagonal[i] += square.weight * factor * factor;
+        }
+        spread(&mut residual, square, square.wanted);
+    }
+    let precondition = |r: &[f64]| -> Vec<f64> {
+        r.iter().zip(&diagonal).map(|(r, d)| if *d > 0.0 { r / d } else { 0.0 }).collect()
+    };
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut x = vec![0.0; unknowns];
+    let mut direction = precondition(&residual);
+    let mut product = dot(&residual, &direction);
+    let goal = product * 1e-24;
+    for _ in 0..100_000 {
+        if product <= goal {
+            return x;
+        }
+        let mut applied = vec![0.0; unknowns];
+        for square in squares {
+            spread(&mut applied, square, value(square, &direction));
+        }
+        let step = product / dot(&direction, &applied);
+        for i in 0..unknowns {
+            x[i] += step * direction[i];
+            residual[i] -= step * applied[i];
+        }
+        let next = precondition(&residual);
+        let next_product = dot(&residual, &next);
+        for (d, n) in direction.iter_mut().zip(next) {
+            *d = n + next_product / product * *d;
+        }
+        product = next_product;
+    }
+    panic!("the oracle did not converge");
+}
+
+/// Depth, p and q over the pixels of `domain` that minimize Harris's energy: slopes near the data with `field.weight`,
+/// `smoothness` times their squared differences, and `misfit` times the squared differences between the rise of depth along
+/// an edge and the mean of its slopes, and, with their own weight on top, those of depth from a prior where it is finite.
+pub fn coupled(
+    field: &Field,
+    domain: &[bool],
+    smoothness: f64,
+    misfit: f64,
+    prior: Option<(&[f64], f64)>,
+) -> Vec<f64> {
+    let pixels = domain.len();
+    let mut squares = Vec::new();
+    for (k, (pairs, slope)) in
+        neighbors(field.width, field.height).iter().zip([&field.p, &field.q]).enumerate()
+    {
+        let slope_of = |i: usize| (k + 1) * pixels + i;
+        for i in (0..pixels).filter(|&i| domain[i] && field.weight[i] > 0.0) {
+            squares.push(Square { weight: field.weight[i], sum: vec![(slope_of(i), 1.0)], wanted: slope[i] });
+        }
+        for &(from, to) in pairs.iter().filter(|&&(a, b)| domain[a] && domain[b]) {
+            for slopes in [pixels, 2 * pixels] {
+                let sum = vec![(slopes + to, 1.0), (slopes + from, -1.0)];
+                squares.push(Square { weight: smoothness, sum, wanted: 0.0 });
+            }
+            let sum = vec![(to, 1.0), (from, -1.0), (slope_of(from), -0.5), (slope_of(to), -0.5)];
+            squares.push(Square { weight: misfit, sum, wanted: 0.0 });
+        }
+    }
+    if let Some((prior, weight)) = prior {
+        for i in (0..pixels).filter(|&i| domain[i] && prior[i].is_finite()) {
+            squares.push(Square { weight: misfit * weight, sum: vec![(i, 1.0)], wanted: prior[i] });
+        }
+    }
+    let mut depth = minimize(3 * pixels, &squares);
+    depth.truncate(pixels);
+    let whole = Field { weight: domain.iter().map(|&d| f64::from(u8::from(d))).collect(), ..field.clone() };
+    free_of_means(&whole, depth, prior.map(|(prior, _)| prior), &vec![true; pixels])
 }

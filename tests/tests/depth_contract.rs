@@ -115,7 +115,7 @@ fn the_same_bits_everywhere() {
 }
 
 /// What [`the_same_bits_everywhere`] gave when it was written, on x86-64.
-const GOLDEN: [u64; 3] = [0x6c6f_4345_db1c_1547, 0x6fc1_5cb3_f7df_2776, 0x6f7c_6537_5a04_a0ca];
+const GOLDEN: [u64; 3] = [0x6c6f_4345_db1c_1547, 0x6fc1_5cb3_f7df_2776, 0xc933_0695_3714_1cdb];
 
 #[test]
 fn stops_where_it_is_told_to() {
@@ -184,10 +184,10 @@ fn bad_input_leaves_the_depth_alone() {
 
 #[test]
 fn workspace_sizes() {
-    let coarse = |w: usize, h: usize| 5 * (w * h / 3 + 3 * w + 2 * h + 180);
+    let coarse = |w: usize, h: usize| 8 * (w * h / 3 + 3 * w + 2 * h + 180);
     for [w, h] in [[1, 1], [7, 5], [640, 480], [2048, 2048], [1, 100_000], [30_000, 17_000]] {
         let fine = (h + 2) * (w + 1) + 1;
-        let singles = 3 * fine + coarse(w, h) + 4 * (w + 2);
+        let singles = 2 * fine + coarse(w, h) + 7 * (w + 2);
         let integers = fine + 4 * (2 * h + 30);
         assert_eq!(need(w, h), Some(Need { doubles: 0, singles, integers }));
     }

@@ -39,6 +39,9 @@
 mod coarsen;
 mod cosine_transform;
 mod coupled;
+mod coupled_equations;
+mod coupled_levels;
+mod coupled_transfer;
 mod fourier;
 mod grid;
 mod hierarchy;
@@ -65,7 +68,7 @@ pub use parameters::{DepthError, DepthParams, DepthResult, MAX_PIXELS, Method};
 
 /// What [`integrate`] needs as workspace for a picture of this size; `None` if there is no such picture.
 ///
-/// With w and h for width and height that is `3 ((h + 2) (w + 1) + 1) + 5 (floor(w h / 3) + 3 w + 2 h + 180) + 4 (w + 2)`
+/// With w and h for width and height that is `2 ((h + 2) (w + 1) + 1) + 8 (floor(w h / 3) + 3 w + 2 h + 180) + 7 (w + 2)`
 /// numbers in single precision and `(h + 2) (w + 1) + 1 + 4 (2 h + 30)` integers.
 #[must_use]
 pub const fn need(width: usize, height: usize) -> Option<Need> {

@@ -11,14 +11,14 @@
 
 use super::grid::Grid;
 use super::hierarchy::{CoarseArrays, Hierarchy};
-use super::operator::{Coarse, Fine, Operator, Packing, at, attach_coarse, attach_fine};
+use super::operator::{Coarse, Fine, Network, Packing, at, attach_coarse, attach_fine};
 use super::span::{Span, StoredSpan};
 use super::transfer::beyond;
-use super::word::{Attachment, ONE};
+use super::word::Attachment;
 
 /// A grid whose attachments can be set.
 trait Attachable {
-    type View<'a>: Operator
+    type View<'a>: Network
     where
         Self: 'a;
     fn view(&self) -> Self::View<'_>;
@@ -124,7 +124,7 @@ fn find_coarse_spans(coarse: Coarse, spans: &mut [StoredSpan]) {
 }
 
 /// The diagonal of a pixel's equation; zero if it has none.
-fn strength<O: Operator>(operator: &O, index: usize) -> f32 {
+fn strength<O: Network>(operator: &O, index: usize) -> f32 {
     let stride = operator.grid().stride();
     (operator.east(index) + operator.east(index - 1))
         + (operator.south(index) + operator.south(index - stride))
@@ -209,7 +209,7 @@ fn attach_strays<A: Attachable>(target: &mut A, spans: &[StoredSpan]) -> bool {
 }
 
 /// Where a pixel that is cut off from its block belongs instead, if anywhere; none for other pixels.
-fn better_block<O: Operator>(operator: &O, index: usize, x: usize, y: usize) -> Option<Attachment> {
+fn better_block<O: Network>(operator: &O, index: usize, x: usize, y: usize) -> Option<Attachment> {
     if operator.attachment(index) != Attachment::None {
         return None;
     }
@@ -233,7 +233,7 @@ const fn block_indices(grid: &Grid, x: usize, y: usize) -> [usize; 4] {
 }
 
 /// A bit for each pixel of a block that has equations but is not connected, within the block, to its largest part.
-fn stray_pixels<O: Operator>(operator: &O, block: [usize; 4]) -> u32 {
+fn stray_pixels<O: Network>(operator: &O, block: [usize; 4]) -> u32 {
     let [a, b, c, _] = block;
     let (top, bottom) = (operator.east(a) > 0.0, operator.east(c) > 0.0);
     let (left, right) = (operator.south(a) > 0.0, operator.south(b) > 0.0);
@@ -280,7 +280,7 @@ fn path(inner: f32, across: f32, other_inner: f32) -> f32 {
 
 /// The weights and masses of the next coarser grid.
 #[inline(never)]
-fn coarsen<O: Operator>(operator: &O, spans: &[StoredSpan], coarse: &mut CoarseArrays) {
+fn coarsen<O: Network>(operator: &O, spans: &[StoredSpan], coarse: &mut CoarseArrays) {
     let grid = operator.grid();
     let coarse_grid = grid.coarser();
     let stride = grid.stride();
@@ -355,7 +355,7 @@ fn unit_blocks(spans: &[StoredSpan], grid: Grid, y: usize) -> (usize, usize) {
 
 /// Every pixel's mass goes to the block it is attached to.
 #[inline(never)]
-fn add_masses<O: Operator>(operator: &O, spans: &[StoredSpan], coarse: &mut CoarseArrays) {
+fn add_masses<O: Network>(operator: &O, spans: &[StoredSpan], coarse: &mut CoarseArrays) {
     let grid = operator.grid();
     let coarse_grid = grid.coarser();
     for y in 0..grid.height {
@@ -389,16 +389,16 @@ impl<P: Packing> Fine<'_, P> {
         let stride = self.grid.stride();
         [index, index - 1, index + 1, index - stride, index + stride]
             .iter()
-            .all(|&index| at(self.words, index) == ONE)
+            .all(|&index| at(self.words, index) == P::UNIT)
     }
 
     /// Whether all of the pixels from `index` on are.
     #[inline(always)]
     fn are_unit(&self, index: usize) -> bool {
         let stride = self.grid.stride();
-        are_all(self.words, index - stride, ONE)
-            && are_all(self.words, index, ONE)
-            && are_all(self.words, index + stride, ONE)
+        are_all(self.words, index - stride, P::UNIT)
+            && are_all(self.words, index, P::UNIT)
+            && are_all(self.words, index + stride, P::UNIT)
     }
 }
 

@@ -12,14 +12,19 @@ const MAX_LEVELS: usize = 30;
 /// Numbers that the coarse grids keep for each of their pixels: two edge weights, a mass, right side and correction.
 const COARSE_ARRAYS: usize = 5;
 
-/// Arrays of numbers of the finest grid: residual, correction and search direction.
-const FINE_ARRAYS: usize = 3;
+/// Numbers that they keep beyond these while [`coupled`](super::coupled) looks for slopes: one right side and correction each
+/// for p and q, less the arrays that are free to be used anew.
+const MORE_COARSE_ARRAYS: usize = 3;
+
+/// Arrays of numbers of the finest grid with the length of the grid: correction and search direction. The residual has that
+/// of [`MORE_COARSE_ARRAYS`] of the coarse grids, which is more.
+const FINE_ARRAYS: usize = 2;
 
 /// Numbers of a stored span.
 const SPAN_NUMBERS: usize = 4;
 
 /// Rows of scratch.
-const ROW_BUFFERS: usize = 4;
+const ROW_BUFFERS: usize = 7;
 
 /// What the workspace must hold for a picture of this size: at most 17/3 words a pixel and some rows.
 ///
@@ -30,7 +35,8 @@ pub(super) const fn need(width: usize, height: usize) -> Option<Need> {
     }
     let (w, h) = (width as u64, height as u64);
     let fine = (h + 2) * (w + 1) + 1;
-    let coarse = COARSE_ARRAYS as u64 * (w * h / 3 + 3 * w + 2 * h + 6 * MAX_LEVELS as u64);
+    let coarse =
+        (COARSE_ARRAYS + MORE_COARSE_ARRAYS) as u64 * (w * h / 3 + 3 * w + 2 * h + 6 * MAX_LEVELS as u64);
     let spans = SPAN_NUMBERS as u64 * (2 * h + MAX_LEVELS as u64);
     let singles = FINE_ARRAYS as u64 * fine + coarse + ROW_BUFFERS as u64 * (w + 2);
     let integers = fine + spans;
@@ -44,7 +50,8 @@ pub(super) const fn need(width: usize, height: usize) -> Option<Need> {
 pub(super) struct FineArrays<'a> {
     /// Weights and flags of pixels, see [`word`](super::word).
     pub words: &'a mut [u32],
-    /// The residual: the right side until the first step.
+    /// The residual: the right side until the first step. Longer than the grid: [`coupled`](super::coupled) keeps coarse
+    /// arrays in it.
     pub residual: &'a mut [f32],
     /// What one multigrid cycle makes of the residual.
     pub correction: &'a mut [f32],
@@ -71,7 +78,7 @@ pub(super) struct Parts<'a> {
     pub grid: Grid,
     pub fine: FineArrays<'a>,
     pub hierarchy: Hierarchy<'a>,
-    /// Four rows of `width + 2`.
+    /// Seven rows of `width + 2`.
     pub buffers: &'a mut [f32],
 }
 
@@ -91,19 +98,22 @@ pub(super) fn split<'a>(grid: Grid, arena: &mut Arena<'a>) -> Option<Parts<'a>> 
     if !arena.holds(need) {
         return None;
     }
+    let buffers_len = ROW_BUFFERS * (grid.width + 2);
+    let coarse_len = need.singles - FINE_ARRAYS * grid.len() - buffers_len;
+    let residual_len = coarse_len / (COARSE_ARRAYS + MORE_COARSE_ARRAYS) * MORE_COARSE_ARRAYS;
     let fine = FineArrays {
         words: arena.integers(grid.len())?,
-        residual: arena.singles(grid.len())?,
+        residual: arena.singles(residual_len)?,
         correction: arena.singles(grid.len())?,
         direction: arena.singles(grid.len())?,
     };
     grid.clear_padding(fine.words);
-    for array in [&mut *fine.residual, fine.correction, fine.direction] {
+    for array in [fine.residual.get_mut(..grid.len())?, fine.correction, fine.direction] {
         grid.clear_padding(array);
     }
-    let buffers = arena.singles(ROW_BUFFERS * (grid.width + 2))?;
+    let buffers = arena.singles(buffers_len)?;
     buffers.fill(0.0);
-    let coarse = arena.singles(need.singles - FINE_ARRAYS * grid.len() - buffers.len())?;
+    let coarse = arena.singles(coarse_len - residual_len)?;
     let spans = arena.integers(need.integers - grid.len())?.as_chunks_mut().0;
     Some(Parts { grid, fine, hierarchy: Hierarchy { finest: grid, coarse, spans }, buffers })
 }

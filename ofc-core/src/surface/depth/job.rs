@@ -25,7 +25,7 @@ pub(super) struct Job<'a> {
 pub(super) type Answer = Option<Result<DepthResult, DepthError>>;
 
 /// Depths of the prior beyond this many pixels are taken for unknown.
-const MAX_PRIOR: f64 = 1e9;
+pub(super) const MAX_PRIOR: f64 = 1e9;
 
 impl Job<'_> {
     /// Reads p into the correction, q into the direction and root weights into the words. Returns the pixels of the mask and the
@@ -104,7 +104,7 @@ impl Job<'_> {
     }
 
     /// Notes of which pixels the prior knows the depth.
-    fn mark_prior(&mut self) {
+    pub fn mark_prior(&mut self) {
         let Parts { grid, fine, .. } = &mut self.parts;
         let Some(prior) = self.input.prior else { return };
         for y in 0..grid.height {

@@ -70,15 +70,8 @@ impl Coefficients for Unit {
     }
 }
 
-/// A matrix over a grid.
-pub(super) trait Operator {
-    /// The coefficients of a row.
-    type Row<'a>: Coefficients
-    where
-        Self: 'a;
-
-    /// The coefficients of the `n` pixels from index `start` on.
-    fn row(&self, start: usize, n: usize) -> Option<Self::Row<'_>>;
+/// The graph of a matrix over a grid: its coefficients one by one, and how its pixels join blocks of the next coarser grid.
+pub(super) trait Network {
     /// Weight of the edge between pixel `index` and its right neighbor.
     fn east(&self, index: usize) -> f32;
     /// Weight of the edge between pixel `index` and the one below.
@@ -111,8 +104,21 @@ pub(super) trait Operator {
     }
 }
 
+/// A matrix over a grid, row by row.
+pub(super) trait Operator: Network {
+    /// The coefficients of a row.
+    type Row<'a>: Coefficients
+    where
+        Self: 'a;
+
+    /// The coefficients of the `n` pixels from index `start` on.
+    fn row(&self, start: usize, n: usize) -> Option<Self::Row<'_>>;
+}
+
 /// How one word a pixel holds both the root of its weight and its mass.
 pub(super) trait Packing: Copy {
+    /// The word of a pixel of root weight one, without mass and flags.
+    const UNIT: u32;
     fn root(self, word: u32) -> f32;
     fn mass(self, word: u32) -> f32;
 }
@@ -124,6 +130,8 @@ pub(super) struct Anchored {
 }
 
 impl Packing for Anchored {
+    const UNIT: u32 = word::ONE;
+
     #[inline(always)]
     fn root(self, word: u32) -> f32 {
         word::number(word)
@@ -132,23 +140,6 @@ impl Packing for Anchored {
     #[inline(always)]
     fn mass(self, word: u32) -> f32 {
         if word::is_known(word) { self.mass } else { 0.0 }
-    }
-}
-
-/// Root weights are zero or one, and the number is one plus the mass where it is one.
-#[derive(Clone, Copy)]
-pub(super) struct OnePlusMass;
-
-impl Packing for OnePlusMass {
-    #[inline(always)]
-    fn root(self, word: u32) -> f32 {
-        let number = word::number(word);
-        if number < 1.0 { number } else { 1.0 }
-    }
-
-    #[inline(always)]
-    fn mass(self, word: u32) -> f32 {
-        word::number(word) - self.root(word)
     }
 }
 
@@ -198,7 +189,9 @@ impl<P: Packing> Operator for Fine<'_, P> {
             packing: self.packing,
         })
     }
+}
 
+impl<P: Packing> Network for Fine<'_, P> {
     #[inline(always)]
     fn east(&self, index: usize) -> f32 {
         self.packing.root(at(self.words, index)) * self.packing.root(at(self.words, index + 1))
@@ -271,7 +264,9 @@ impl Operator for Coarse<'_> {
             mass: self.mass.get(start..start + n)?,
         })
     }
+}
 
+impl Network for Coarse<'_> {
     #[inline(always)]
     fn east(&self, index: usize) -> f32 {
         at(self.east, index).abs()

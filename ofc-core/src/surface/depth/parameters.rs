@@ -15,8 +15,9 @@ pub enum Method {
     /// The paper's own choice (section 5): least squares over the whole rectangle, flat (p = q = 0) wherever the pixel is
     /// outside the mask or unusable. Weights beyond zero or not are ignored. Depth is given in the mask.
     Paper,
-    /// The coupled depth/slope model: smooth slopes are fitted to the usable pixels and span the others, then depth is
-    /// fitted to these slopes, over the whole mask.
+    /// The coupled depth/slope model, over the whole mask: depth and smooth slopes that fit each other, and the usable pixels,
+    /// span the others. The squared misfit of depth and slopes along an edge has ten times the weight of the smoothness; it is
+    /// the equation of an edge that the weight of a prior refers to.
     Coupled,
 }
 
@@ -27,7 +28,8 @@ pub struct DepthParams {
     pub method: Method,
     /// Width and height of a pixel on the surface, in the unit that depth is wanted in: positive. Default 1.
     pub pixel_pitch: f64,
-    /// The residual to reach, as a part of the right side's norm: in [1e-6, 1]. Default 1e-4.
+    /// The residual to reach, as a part of the right side's norm: in [1e-6, 1]. Default 1e-4. For [`Method::Coupled`] also how
+    /// far depth may still have to go, as a part of the size of depth and slopes.
     pub tolerance: f64,
     /// Multigrid cycles at most, for each system of equations. Default 1000.
     pub max_cycles: u32,
@@ -70,7 +72,8 @@ impl DepthParams {
 /// What came out, beside the depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DepthResult {
-    /// Whether the tolerance was reached, or, by a direct solution, what f32 can hold.
+    /// Whether the tolerance was reached, or, by a direct solution, what f32 can hold. By [`Method::Coupled`] the changes of
+    /// depth that are still to come, as the last ones tell, are below the tolerance, too.
     pub converged: bool,
     /// Multigrid cycles, of all systems of equations together: zero if depth was solved for directly.
     pub cycles: u32,

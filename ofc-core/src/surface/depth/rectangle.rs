@@ -244,7 +244,7 @@ fn solve(grid: &Grid, along: Along, fine: &mut FineArrays, workspace: &mut [f32]
     // What the equations of a frequency leave out, and what the cosine transforms do.
     let weight = |k| if k == 0 { 1.0 } else { 1.0 - tridiagonal::gap(k, n) } / n as f64;
     let mut transform = CosineTransform::new(n, weight, workspace, fine.words)?;
-    let right = Rows { data: fine.residual.get(inner..)?, stride };
+    let right = Rows { data: fine.residual.get(inner..grid.len())?, stride };
     if along == Along::Columns {
         let mut spectrum = Rows { data: &mut *fine.correction, stride: n + 1 };
         transform.forward(&right, width, &mut spectrum);

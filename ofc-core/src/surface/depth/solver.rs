@@ -62,11 +62,6 @@ pub(super) struct Output<'a> {
 }
 
 impl Output<'_> {
-    pub fn row(&self, y: usize) -> &[f32] {
-        let start = y * self.row_stride;
-        self.data.get(start..start + self.width).unwrap_or_default()
-    }
-
     pub fn row_mut(&mut self, y: usize) -> &mut [f32] {
         let start = y * self.row_stride;
         self.data.get_mut(start..start + self.width).unwrap_or_default()

@@ -9,12 +9,12 @@
 //! 98 (1992); D. Y. Kwak, "V-cycle multigrid for cell-centered finite differences", SIAM J. Sci. Comput. 21 (1999).
 
 use super::grid::Grid;
-use super::operator::{Operator, at};
+use super::operator::{Network, Operator, at};
 use super::span::Span;
 use super::word::Attachment;
 
 /// Shares of a pixel's own block, of the block beside it and of the block across.
-type Shares = [f32; 3];
+pub(super) type Shares = [f32; 3];
 
 const UNIFORM: Shares = [0.5, 0.25, 0.25];
 
@@ -28,7 +28,7 @@ pub(super) const fn beyond(position: usize) -> usize {
 const EMPHASIS: f32 = 1.02;
 
 /// The shares of pixel `(x, y)`.
-fn shares<O: Operator>(operator: &O, x: usize, y: usize) -> Shares {
+pub(super) fn shares<N: Network>(operator: &N, x: usize, y: usize) -> Shares {
     match operator.attachment(operator.grid().start(y) + x) {
         Attachment::None => [0.0; 3],
         Attachment::Beside => [0.0, 1.0, 0.0],
@@ -50,7 +50,7 @@ const fn uniform_blocks(span: Span) -> (usize, usize) {
 }
 
 /// Index of column `x` of row `y` in the coarse grid, none outside of it.
-fn coarse_index(grid: &Grid, x: usize, y: usize) -> Option<usize> {
+pub(super) fn coarse_index(grid: &Grid, x: usize, y: usize) -> Option<usize> {
     (x < grid.width && y < grid.height).then(|| grid.start(y) + x)
 }
 
