@@ -26,11 +26,12 @@
 
 namespace ofc {
 
-// ---- Errors ----------------------------------------------------------------------------------------------------------
+// ---- Errors ---------------------------------------------------------------------------------------------------------
 
 /// A call did not do what it was asked for. what() is ofc_status_message().
 class Error : public std::runtime_error {
   public:
+    /// Of a status that is not OFC_STATUS_OK.
     explicit Error(ofc_status status) : std::runtime_error(ofc_status_message(status)), status_(status) {}
 
     /// One of OFC_STATUS_*, never OFC_STATUS_OK.
@@ -43,6 +44,7 @@ class Error : public std::runtime_error {
 /// The picture is sound, but it does not determine F.
 class Undetermined : public Error {
   public:
+    /// Of a positive status of ofc_solve(), and what it wrote.
     Undetermined(ofc_status status, const ofc_solution &solution)
         : Error(status), solution_(std::make_shared<const ofc_solution>(solution))
     {
@@ -62,7 +64,7 @@ inline void ensure_ok(ofc_status status)
         throw Error(status);
 }
 
-// ---- Views and memory ------------------------------------------------------------------------------------------------
+// ---- Views and memory -----------------------------------------------------------------------------------------------
 
 /// Rows of pixels in memory of somebody else, each of `Channels` values of type T. A view without data stands for none.
 template <class T, std::size_t Channels = 1> struct View {
@@ -72,6 +74,7 @@ template <class T, std::size_t Channels = 1> struct View {
     std::size_t stride_bytes = 0; ///< How many bytes lie from one row to the next.
 
     View() = default;
+    /// Rows a stride apart, in bytes.
     View(T *first, std::int32_t columns, std::int32_t rows, std::size_t stride)
         : data(first), width(columns), height(rows), stride_bytes(stride)
     {
@@ -101,19 +104,26 @@ template <class T, std::size_t Channels = 1> struct View {
 template <class T, std::size_t Channels = 1> class Array {
   public:
     Array() = default;
+    /// So many pixels in a row and so many rows, neither of them negative.
     Array(std::int32_t width, std::int32_t height)
         : width_(width), height_(height), values_(OFC_PIXELS(width, height) * Channels)
     {
     }
 
+    /// How many pixels are in a row.
     std::int32_t width() const noexcept { return width_; }
+    /// How many rows there are.
     std::int32_t height() const noexcept { return height_; }
+    /// The first value.
     T *data() noexcept { return values_.data(); }
+    /// The first value.
     const T *data() const noexcept { return values_.data(); }
     /// How many values there are: width x height x Channels.
     std::size_t size() const noexcept { return values_.size(); }
 
+    /// A view to write through.
     View<T, Channels> view() { return {data(), width_, height_}; }
+    /// A view to read through.
     View<const T, Channels> view() const { return {data(), width_, height_}; }
     /// The first value of a pixel; the place is not checked.
     const T *at(std::int32_t x, std::int32_t y) const { return view().at(x, y); }
@@ -145,7 +155,7 @@ class Workspace {
     std::vector<std::uint64_t> words_;
 };
 
-// ---- Parameters ------------------------------------------------------------------------------------------------------
+// ---- Parameters -----------------------------------------------------------------------------------------------------
 
 namespace detail {
 inline ofc_status set_defaults(ofc_solve_params *params) { return ofc_solve_params_default(params); }
@@ -165,7 +175,7 @@ template <class Params> Params defaults()
     return params;
 }
 
-// ---- A picture -------------------------------------------------------------------------------------------------------
+// ---- A picture ------------------------------------------------------------------------------------------------------
 
 namespace detail {
 // A view of another size than that of the picture is a mistake that C could not see.
@@ -196,7 +206,8 @@ inline ofc_image image(const void *pixels, std::int32_t width, std::int32_t heig
 }
 
 /// Three planes of one stride as the channels, such as three gray photographs under three lights.
-/// @param format  One of OFC_PIXEL_PLANES*.
+/// The format is one of OFC_PIXEL_PLANES*.
+/// @throws Error with OFC_STATUS_INVALID_PARAMETER for a mask of another size.
 inline ofc_image planes(const void *red, const void *green, const void *blue, std::int32_t width, std::int32_t height,
                         std::size_t row_stride_bytes, ofc_pixel_format format, View<const std::uint8_t> mask = {})
 {
@@ -206,10 +217,10 @@ inline ofc_image planes(const void *red, const void *green, const void *blue, st
     return image;
 }
 
-// ---- From a picture to normals ---------------------------------------------------------------------------------------
+// ---- From a picture to normals --------------------------------------------------------------------------------------
 
-/// ofc_solve().
-/// @param inliers  Output: 255 for an inlier, else 0; rows without gaps. It may be empty.
+/// ofc_solve(). Where there is a view of inliers, it has rows without gaps, and becomes 255 for an inlier and 0
+/// elsewhere.
 /// @throws Undetermined where the picture does not determine F; Error for any other status.
 inline ofc_solution solve(const ofc_image &image, const ofc_solve_params &params, Workspace &workspace,
                           View<std::uint8_t> inliers = {})
@@ -275,7 +286,7 @@ inline ofc_check_result check(const ofc_image &image, const ofc_solution &soluti
     return result;
 }
 
-// ---- Depth -----------------------------------------------------------------------------------------------------------
+// ---- Depth ----------------------------------------------------------------------------------------------------------
 
 /// Normals to be integrated, over a mask where there is one. Weights and known depths are set in the result.
 inline ofc_depth_input depth_input(View<const float, 3> normals, View<const std::uint8_t> mask = {})
@@ -307,21 +318,24 @@ inline ofc_depth_result integrate(const ofc_depth_input &input, const ofc_depth_
     return result;
 }
 
-// ---- Streams ---------------------------------------------------------------------------------------------------------
+// ---- Streams --------------------------------------------------------------------------------------------------------
 
 /// An ofc_stream with its memory: rows of a camera go in, rows of normals come out.
 class Stream {
   public:
+    /// ofc_stream_init() in memory that the object keeps.
     Stream(std::int32_t width, std::int32_t height, ofc_pixel_format format,
            const ofc_stream_params &params = defaults<ofc_stream_params>())
     {
         const std::size_t bytes = ofc_stream_size(width, height, &params);
         ensure_ok(ofc_stream_init(width, height, format, &params, memory_.get(bytes), bytes, &stream_));
     }
+    /// The memory moves with the stream; the other object has none then, and its calls throw.
     Stream(Stream &&other) noexcept
         : memory_(std::move(other.memory_)), stream_(std::exchange(other.stream_, nullptr))
     {
     }
+    /// The memory moves with the stream; the other object has none then, and its calls throw.
     Stream &operator=(Stream &&other) noexcept
     {
         memory_ = std::move(other.memory_);
@@ -352,12 +366,14 @@ class Stream {
     /// Forgets the model: the next frame is for colors.
     void restart() { ensure_ok(ofc_stream_restart(stream_)); }
 
+    /// What the last cold start or frame came to.
     ofc_solution solution()
     {
         ofc_solution solution = {};
         ensure_ok(ofc_stream_solution(stream_, &solution));
         return solution;
     }
+    /// How far the model moved with the last frame that refined it.
     ofc_stream_drift drift()
     {
         ofc_stream_drift drift = {};
@@ -384,7 +400,7 @@ class Stream {
 
 #endif // OFC_HPP
 
-// ---- OpenCV ----------------------------------------------------------------------------------------------------------
+// ---- OpenCV ---------------------------------------------------------------------------------------------------------
 
 #if defined(OPENCV_CORE_HPP) && !defined(OFC_HPP_OPENCV)
 #define OFC_HPP_OPENCV

@@ -1,4 +1,5 @@
-//! Everything in `include/ofc.h` is documented, as Doxygen sees it, and no comment names what is not there.
+//! Everything in `include/ofc.h` and `include/ofc.hpp` is documented, as Doxygen sees it, and no comment names what is not
+//! there.
 
 use ofc_tests::shipped::root;
 use std::collections::HashSet;
@@ -6,13 +7,21 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What Doxygen says of a header; empty when every macro, type, field, function, parameter and return value is documented.
-fn complaints(name: &str, header: &str) -> String {
+/// For C: parameters and return values are documented too.
+const OF_C: &str = "INPUT=ofc.h\nOPTIMIZE_OUTPUT_FOR_C=YES\nWARN_NO_PARAMDOC=YES\n";
+
+/// For C++, where they are those of C.
+const OF_CPP: &str = "INPUT=ofc.hpp\nPREDEFINED=OPENCV_CORE_HPP\nEXCLUDE_SYMBOLS=*detail*\n";
+
+/// What Doxygen says of a header; empty when every macro, type, field and function is documented, and what the options ask for.
+fn complaints(name: &str, header: &str, options: &str) -> String {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("doxygen").join(name);
     std::fs::create_dir_all(&folder).expect("a folder");
-    std::fs::write(folder.join("ofc.h"), header).expect("a file");
-    let config = "INPUT=ofc.h\nQUIET=YES\nOPTIMIZE_OUTPUT_FOR_C=YES\nWARN_IF_UNDOCUMENTED=YES\nWARN_NO_PARAMDOC=YES\n\
-                  GENERATE_LATEX=NO\nSEARCHENGINE=NO\nHAVE_DOT=NO\n";
+    let input = options.lines().next().and_then(|line| line.strip_prefix("INPUT=")).expect("a file first");
+    std::fs::write(folder.join(input), header).expect("a file");
+    let config = "QUIET=YES\nWARN_IF_UNDOCUMENTED=YES\nGENERATE_LATEX=NO\nSEARCHENGINE=NO\nHAVE_DOT=NO\n"
+        .to_owned()
+        + options;
     let mut process = Command::new("doxygen")
         .arg("-")
         .current_dir(&folder)
@@ -28,6 +37,10 @@ fn complaints(name: &str, header: &str) -> String {
 
 fn header() -> String {
     std::fs::read_to_string(root().join("include/ofc.h")).expect("the header")
+}
+
+fn header_of_cpp() -> String {
+    std::fs::read_to_string(root().join("include/ofc.hpp")).expect("the header")
 }
 
 /// The names of this library in a text, `OFC_STATUS_*` among them.
@@ -50,12 +63,22 @@ fn strangers(header: &str) -> Vec<&str> {
 
 #[test]
 fn doxygen_finds_everything_documented() {
-    assert_eq!(complaints("header", &header()), "");
+    assert_eq!(complaints("header", &header(), OF_C), "");
+    let cpp = header_of_cpp();
+    assert_eq!(complaints("cpp", &cpp, OF_CPP), "");
+    for piece in [
+        "    /// A view to write through.\n",
+        "/// The normals as CV_32FC3 in the order x, y, z; zero where there is none.\n",
+    ] {
+        assert_ne!(complaints("cpp-without", &cpp.replacen(piece, "", 1), OF_CPP), "", "{piece}");
+    }
 }
 
 #[test]
 fn comments_name_what_is_there() {
     assert_eq!(strangers(&header()), [""; 0]);
+    // What the comments of the header for C++ name is in either of them.
+    assert_eq!(strangers(&(header() + &header_of_cpp())), [""; 0]);
 }
 
 #[test]
@@ -64,7 +87,7 @@ fn what_is_not_documented_is_found() {
                  int field; ///< A field.\n} ofc_struct;\n\n/// A type.\ntypedef int ofc_type;\n\n/// A function.\n/// @param \
                  first  One.\n/// @param second,third  Two.\n/// @return A number.\nint ofc_function(int first, int second, \
                  ofc_type third);\n";
-    assert_eq!(complaints("whole", whole), "");
+    assert_eq!(complaints("whole", whole, OF_C), "");
     let pieces = [
         "/// A macro.\n",
         "/// A struct.\n",
@@ -75,7 +98,7 @@ fn what_is_not_documented_is_found() {
     ];
     for (i, piece) in pieces.into_iter().chain(["/// @return A number.\n"]).enumerate() {
         let without = whole.replacen(piece, "", 1);
-        assert_ne!(complaints(&format!("without-{i}"), &without), "", "{piece}");
+        assert_ne!(complaints(&format!("without-{i}"), &without, OF_C), "", "{piece}");
     }
 }
 
