@@ -592,8 +592,8 @@ struct ofc_depth_params {
     /// Normals with n3 / |n| below this lose weight with its square, and their slope stops growing: in [0.001, 1].
     /// Default 0.05, for slopes up to 20.
     double min_n3;
-    /// Weight of a pixel of the prior relative to the equation of one edge, in [0, 1e6]; 0 ignores the prior. Default
-    /// 1e-3.
+    /// Weight of a pixel of the prior relative to the equation of one edge, in [0, 1e6]; 0 ignores the prior. With any
+    /// other, known depths are right on average in each region, and with the smallest that is all they do. Default 1e-3.
     double prior_weight;
     /// For OFC_DEPTH_COUPLED: the weight of the squared difference of neighboring slopes relative to the weight of the
     /// squared difference of a pixel's slope from its data, in [1e-3, 1e3]. Default 0.1.

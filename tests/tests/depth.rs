@@ -1,8 +1,8 @@
 //! Depth from normals against an independent solution.
 
 use ofc_core::math::rng::Rng;
-use ofc_core::surface::depth::{DepthParams, Method, Plane};
-use ofc_tests::depth_oracle as oracle;
+use ofc_core::surface::depth::{DepthInput, DepthParams, Method, Plane, Slopes};
+use ofc_tests::depth_oracle::{self as oracle, Field};
 use ofc_tests::depth_scenes::{
     Scene, all, bumps, disc, distance, messy, precise, quadratic, rms, run, scene,
 };
@@ -135,7 +135,7 @@ fn weights_against_the_oracle() {
 #[test]
 fn unusable_normals_are_left_out_and_counted() {
     let mut scene = scene([40, 30], bumps, 0.0, all);
-    let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, 1e38];
+    let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, -1e38];
     for (k, value) in bad.iter().enumerate() {
         scene.normals[3 * (k * 100 + 7) + 2] = *value;
     }
@@ -151,6 +151,30 @@ fn unusable_normals_are_left_out_and_counted() {
     let (masked, result) = run(&scene.input(), &DepthParams::default()).unwrap();
     assert_eq!(result.excluded, 0);
     assert!(depth.iter().zip(&masked).all(|(a, b)| a.to_bits() == b.to_bits()));
+}
+
+#[test]
+fn normals_of_any_length() {
+    let mut scene = scene([40, 30], bumps, 0.0, all);
+    let (expected, _) = run(&scene.input(), &DepthParams::default()).unwrap();
+    let expected: Vec<f64> = expected.iter().map(|&z| f64::from(z)).collect();
+    // The longest and shortest that f32 has, without loss of digits, and what lies between.
+    for (i, normal) in scene.normals.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+        let scale = [1e38, 1e-35, 1e20, 1.0, 1e-20, 1e15, 1e-15][i % 7];
+        *normal = normal.map(|n| n * scale);
+    }
+    let (depth, result) = run(&scene.input(), &DepthParams::default()).unwrap();
+    assert_eq!(result.excluded, 0);
+    assert!(distance(&depth, &expected) < 1e-5, "{}", distance(&depth, &expected));
+    // The smallest numbers there are, straight ahead, and one that grazes so much that nothing is left of its n3.
+    scene.normals[..3].copy_from_slice(&[0.0, 0.0, 1e-45]);
+    scene.normals[300..303].copy_from_slice(&[1e38, 0.0, 1e-45]);
+    // The control: components that are not finite have no direction.
+    scene.normals[600..603].copy_from_slice(&[f32::INFINITY, 0.0, 1.0]);
+    scene.normals[900..903].copy_from_slice(&[0.0, f32::NAN, 1.0]);
+    let (depth, result) = run(&scene.input(), &DepthParams::default()).unwrap();
+    assert_eq!(result.excluded, 2);
+    assert!(depth.iter().enumerate().all(|(i, z)| z.is_nan() == (i == 200 || i == 300)));
 }
 
 #[test]
@@ -204,6 +228,68 @@ fn a_prior_fixes_the_depth_of_its_regions() {
     let (depth, _) = run(&input, &DepthParams { prior_weight: 0.0, ..precise() }).unwrap();
     let (plain, _) = run(&scene.input(), &precise()).unwrap();
     assert!(depth.iter().zip(&plain).all(|(a, b)| a.to_bits() == b.to_bits()));
+}
+
+#[test]
+fn a_weak_prior_still_fixes_the_mean() {
+    let (width, height) = (8, 6);
+    let pixels = width * height;
+    let number = |i: usize, factor: usize, modulus: usize| (i * factor % modulus) as f64;
+    let mut field = Field {
+        width,
+        height,
+        p: (0..pixels).map(|i| 0.3 * (number(i, 37, 11) - 5.0)).collect(),
+        q: (0..pixels).map(|i| 0.2 * (number(i, 29, 13) - 6.0)).collect(),
+        weight: vec![1.0; pixels],
+    };
+    let prior: Vec<f64> = (0..pixels).map(|i| (1 + i % 3) as f64).collect();
+    // Two holes, and a wall that leaves a region of its own, of which the prior knows two pixels.
+    let mask: Vec<u8> = (0..pixels).map(|i| u8::from(i != 20 && i != 9 && i % 8 != 5)).collect();
+    let known: Vec<f64> =
+        prior.iter().enumerate().map(|(i, &z)| if i % 8 < 6 || i % 24 == 7 { z } else { f64::NAN }).collect();
+    let floats = |values: &[f64]| values.iter().map(|&value| value as f32).collect::<Vec<_>>();
+    let (p, q, known32) = (floats(&field.p), floats(&field.q), floats(&known));
+    let plane = |data| Plane::new(data, width, height, 1, width).unwrap();
+    let input = DepthInput {
+        slopes: Slopes::Gradients { p: plane(&p), q: plane(&q) },
+        mask: Some(Plane::new(&mask, width, height, 1, width).unwrap()),
+        weights: None,
+        prior: Some(plane(&known32)),
+    };
+    let domain: Vec<bool> = mask.iter().map(|&m| m != 0).collect();
+    for method in [Method::Poisson, Method::Paper, Method::Coupled] {
+        for (i, &inside) in domain.iter().enumerate() {
+            field.weight[i] = if method == Method::Paper || inside { 1.0 } else { 0.0 };
+            if !inside {
+                (field.p[i], field.q[i]) = (0.0, 0.0);
+            }
+        }
+        let exact = |prior| match method {
+            Method::Coupled => oracle::coupled(&field, &domain, 0.1, 1.0, prior),
+            _ => oracle::poisson(&field, prior),
+        };
+        // In the limit, the shape without a prior, and its mean from that.
+        let (labels, count) = oracle::regions(&field);
+        let mut limit = exact(None);
+        for region in 0..count {
+            let inside = || (0..pixels).filter(|&i| labels[i] == Some(region));
+            let beyond: Vec<f64> =
+                inside().filter(|&i| known[i].is_finite()).map(|i| limit[i] - known[i]).collect();
+            let mean = beyond.iter().sum::<f64>() / beyond.len() as f64;
+            inside().collect::<Vec<_>>().into_iter().for_each(|i| limit[i] -= mean);
+        }
+        let weights =
+            [1e-3, 1e-5, 1e-6, 1e-8, 1e-10, 1e-12, 1e-15, 1e-20, 1e-37, 1e-38, 1e-44, 1e-46, 5e-324];
+        for prior_weight in weights {
+            let (depth, result) =
+                run(&input, &DepthParams { method, prior_weight, ..DepthParams::default() }).unwrap();
+            let mut expected =
+                if prior_weight < 1e-6 { limit.clone() } else { exact(Some((&known, prior_weight))) };
+            expected.iter_mut().zip(&domain).filter(|(_, inside)| !**inside).for_each(|(z, _)| *z = f64::NAN);
+            let error = distance(&depth, &expected);
+            assert!(result.converged && error < 1e-3, "{method:?} {prior_weight} {result:?} {error}");
+        }
+    }
 }
 
 #[test]

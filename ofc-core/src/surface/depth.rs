@@ -39,6 +39,7 @@
 mod coarsen;
 mod cosine_transform;
 mod coupled;
+mod coupled_change;
 mod coupled_equations;
 mod coupled_levels;
 mod coupled_transfer;

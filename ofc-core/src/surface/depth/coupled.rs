@@ -24,9 +24,9 @@
 //! J. G. Harris, "A new approach to surface reconstruction: the coupled depth/slope model", ICCV 1987. On corrections whose
 //! length is searched for: A. Reusken, "Steplength optimization and linear multigrid methods", Numer. Math. 58 (1991).
 
+use super::coupled_change::Change;
 use super::coupled_equations::{Equations, Field, MISFIT, Right};
 use super::coupled_levels::{Finest, Levels, Slopes};
-use super::coupled_transfer::Change;
 use super::hierarchy::Parts;
 use super::input::{DepthInput, SlopeRow};
 use super::job::{Answer, Job};
@@ -53,11 +53,8 @@ pub(super) fn integrate(mut job: Job) -> Answer {
             *slot = if masked { Slopes::word(inverse * root * root) } else { 0 };
         }
     }
-    let anchored = params.prior_weight > 0.0 && job.input.prior.is_some();
-    if anchored {
-        job.mark_prior();
-    }
-    let (cycles, converged) = job.couple(masked, if anchored { params.prior_weight as f32 } else { 0.0 })?;
+    job.mark_prior();
+    let (cycles, converged) = job.couple(masked)?;
     let Parts { grid, fine, .. } = &mut job.parts;
     for y in 0..grid.height {
         for slot in grid.row_mut(fine.words, y) {
@@ -71,8 +68,9 @@ pub(super) fn integrate(mut job: Job) -> Answer {
 impl Job<'_> {
     /// Leaves the slopes in the correction (p) and the direction (q). Returns the cycles and whether they were enough.
     #[inline(never)]
-    fn couple(&mut self, pixels: usize, anchor: f32) -> Option<(u32, bool)> {
+    fn couple(&mut self, pixels: usize) -> Option<(u32, bool)> {
         let params = self.params;
+        let anchor = self.anchor();
         let origin = if anchor > 0.0 { self.mean_prior() } else { 0.0 };
         let Parts { grid, fine, hierarchy, buffers } = &mut self.parts;
         let grid = *grid;

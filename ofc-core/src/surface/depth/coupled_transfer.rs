@@ -5,6 +5,7 @@
 //! with depths that fit the slopes: if depth were interpolated for itself, the misfit would resist every correction by a coarse
 //! grid (the locking of thin plates in finite elements).
 
+use super::coupled_change::{Change, Changes};
 use super::coupled_equations::{Coefficients, Coupled, Equations, Right, Triple};
 use super::coupled_levels::{Level, Packed};
 use super::grid::Grid;
@@ -12,7 +13,6 @@ use super::operator::{Network, at};
 use super::span::{Span, StoredSpan};
 use super::sweep::dot;
 use super::transfer::{beyond, coarse_index, shares};
-use libm::sqrt;
 
 /// A block that a pixel takes from.
 struct Parent {
@@ -73,31 +73,6 @@ fn prolong(parents: &[Parent; 3], correction: &[&mut [f32]; 3]) -> Triple {
     sum
 }
 
-/// What a correction, at its full length at least, does to the depth of all pixels.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Change {
-    /// The sum of the squares of the changes.
-    pub squared: f64,
-    /// The sum of the changes.
-    pub sum: f64,
-    /// The sum of the squared depths.
-    pub depth_squared: f64,
-    /// The sum of the depths.
-    pub depth_sum: f64,
-    /// The sum of the squares of p and q.
-    pub slopes_squared: f64,
-}
-
-impl Change {
-    /// The root mean square of the changes, and the size of the surface: that of the depths and slopes together. Depth counts
-    /// without its mean.
-    pub fn sizes(&self, pixels: f64) -> [f64; 2] {
-        let variance = |squared: f64, sum: f64| (squared / pixels - (sum / pixels) * (sum / pixels)).max(0.0);
-        let size = variance(self.depth_squared, self.depth_sum) + self.slopes_squared / pixels;
-        [sqrt(variance(self.squared, self.sum)), sqrt(size)]
-    }
-}
-
 impl<O: Coupled, R: Right> Equations<'_, O, R> {
     /// Makes the residual the right side of the coarse grid and its correction zero.
     #[inline(never)]
@@ -130,12 +105,19 @@ impl<O: Coupled, R: Right> Equations<'_, O, R> {
         let gain: f64 = coarse.right.iter().zip(&coarse.correction).map(|(r, c)| product(&grid, r, c)).sum();
         let step = if gain > 0.0 && energy > 0.0 { (gain / energy) as f32 } else { 0.0 };
         let (operator, below) = (self.operator, coarse.operator);
-        let mut total = Change::default();
-        for y in 0..operator.grid().height {
-            let [first, last] = Span::load(spans, y, operator.grid().width).active;
+        let [sums, numbers, _] = above;
+        let mut changes = Changes::new([sums, numbers]);
+        let grid = operator.grid();
+        for y in 0..grid.height {
+            let [first, last] = Span::load(spans, y, grid.width).active;
             let mut rows = self.unknowns.each_mut().map(|field| field.row_mut(y));
-            let start = operator.grid().start(y);
-            for x in (first..last).filter(|x| operator.is_inside(start + x)) {
+            let start = grid.start(y);
+            for x in 0..grid.width {
+                if x < first || x >= last || !operator.is_inside(start + x) {
+                    changes.end_row();
+                    changes.end_column(x);
+                    continue;
+                }
                 let change = prolong(&parents(&operator, &below, x, y), &coarse.correction);
                 for (row, change) in rows.iter_mut().zip(change) {
                     if let Some(value) = row.get_mut(x) {
@@ -143,16 +125,11 @@ impl<O: Coupled, R: Right> Equations<'_, O, R> {
                     }
                 }
                 // A step that had to be short says that there is more to do, not less.
-                let (change, depth) = (f64::from(step.max(1.0) * change[0]), f64::from(at(rows[0], x)));
-                total.squared += change * change;
-                total.sum += change;
-                total.depth_squared += depth * depth;
-                total.depth_sum += depth;
-                let (p, q) = (f64::from(at(rows[1], x)), f64::from(at(rows[2], x)));
-                total.slopes_squared += p * p + q * q;
+                changes.add(x, step.max(1.0) * change[0], rows.each_ref().map(|row| at(row, x)));
             }
+            changes.end_row();
         }
-        total
+        changes.finish()
     }
 
     /// The energy of the correction of the coarse grid; `above` is scratch.

@@ -57,7 +57,7 @@ pub enum Slopes<'a> {
 /// Everything there is to integrate.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthInput<'a> {
-    /// Normals or gradients. A pixel whose normal is not finite, has no length or faces away is unusable.
+    /// Normals or gradients. A pixel whose normal is not finite or has no positive n3 is unusable.
     pub slopes: Slopes<'a>,
     /// Where depth is wanted: pixels that are not zero. `None` is the whole picture.
     pub mask: Option<Plane<'a, u8>>,
@@ -71,8 +71,8 @@ pub struct DepthInput<'a> {
 /// Weights beyond this contrast are brought into it.
 pub const WEIGHT_RANGE: [f32; 2] = [1e-4, 1e4];
 
-/// The shortest and longest normals that still have a direction in f32, squared.
-const LENGTH_RANGE: [f32; 2] = [1e-30, 1e30];
+/// The squares of the shortest and longest normals whose squares f32 holds well.
+const SQUARES: [f32; 2] = [1e-30, 1e30];
 
 /// A row of slopes to fill in.
 pub(super) struct SlopeRow<'a> {
@@ -113,7 +113,7 @@ impl DepthInput<'_> {
 
     /// Fills in row `y`. Returns how many pixels are in the mask and how many of these are usable.
     pub(super) fn read(&self, y: usize, min_n3: f32, row: &mut SlopeRow) -> [usize; 2] {
-        let grazing = match &self.slopes {
+        let again = match &self.slopes {
             Slopes::Normals(normals) => {
                 let pixels = normals.row(y).as_chunks::<3>().0;
                 convert(pixels.iter().copied(), min_n3, row)
@@ -123,8 +123,8 @@ impl DepthInput<'_> {
                 convert(pixels.map(|(&p, &q)| [-p, -q, 1.0]), min_n3, row)
             }
         };
-        if grazing {
-            self.clamp_grazing(y, min_n3, row);
+        if again {
+            self.convert_again(y, min_n3, row);
         }
         let width = row.root.len();
         let mut masked = width;
@@ -154,9 +154,9 @@ impl DepthInput<'_> {
         [masked, usable]
     }
 
-    /// Normals of row `y` that lean further than `min_n3` lose weight with the square of their n3, and their slope
-    /// stops growing.
-    fn clamp_grazing(&self, y: usize, min_n3: f32, row: &mut SlopeRow) {
+    /// Does what [`convert`] leaves. Normals of row `y` that lean further than `min_n3` lose weight with the square of their
+    /// n3, and their slope stops growing; the very long and short ones are scaled by their largest component.
+    fn convert_again(&self, y: usize, min_n3: f32, row: &mut SlopeRow) {
         for x in 0..row.root.len() {
             let normal = match &self.slopes {
                 Slopes::Normals(normals) => normals.row(y).as_chunks::<3>().0.get(x).copied(),
@@ -165,11 +165,19 @@ impl DepthInput<'_> {
                     _ => None,
                 },
             };
-            let (Some([n1, n2, n3]), Some(p), Some(q), Some(root)) =
+            let (Some(mut normal), Some(p), Some(q), Some(root)) =
                 (normal, row.p.get_mut(x), row.q.get_mut(x), row.root.get_mut(x))
             else {
                 return;
             };
+            let [_, _, n3] = normal;
+            let largest = normal.iter().fold(0.0, |largest: f32, n| largest.max(n.abs()));
+            if *root == 0.0 && n3 > 0.0 && normal.iter().all(|n| n.is_finite()) {
+                normal = normal.map(|n| n / largest);
+                let [n1, n2, n3] = normal;
+                (*p, *q, *root) = (-n1 / n3, -n2 / n3, 1.0);
+            }
+            let [n1, n2, n3] = normal;
             let squared = n1 * n1 + n2 * n2 + n3 * n3;
             if *root > 0.0 && n3 * n3 < min_n3 * min_n3 * squared {
                 let scale = 1.0 / (min_n3 * sqrtf(squared));
@@ -182,21 +190,21 @@ impl DepthInput<'_> {
     }
 }
 
-/// Slopes without mask and weights; returns whether a usable normal needs the clamp.
+/// Slopes without mask and weights; returns whether a normal that faces the camera is left for a closer look.
 #[inline(always)]
 fn convert(pixels: impl Iterator<Item = [f32; 3]>, min_n3: f32, row: &mut SlopeRow) -> bool {
     let limit = min_n3 * min_n3;
-    let [shortest, longest] = LENGTH_RANGE;
-    let mut grazing = false;
+    let [shortest, longest] = SQUARES;
+    let mut again = false;
     let out = row.p.iter_mut().zip(row.q.iter_mut()).zip(row.root.iter_mut());
     for (((p, q), root), [n1, n2, n3]) in out.zip(pixels) {
         let squared = n1 * n1 + n2 * n2 + n3 * n3;
         let usable = n3 > 0.0 && squared > shortest && squared < longest;
-        grazing |= usable && n3 * n3 < limit * squared;
+        again |= n3 > 0.0 && !(usable && n3 * n3 >= limit * squared);
         let scale = -1.0 / n3;
         *p = if usable { n1 * scale } else { 0.0 };
         *q = if usable { n2 * scale } else { 0.0 };
         *root = if usable { 1.0 } else { 0.0 };
     }
-    grazing
+    again
 }

@@ -24,6 +24,9 @@ pub(super) struct Job<'a> {
 /// The inner `None` of a method: an array is not as long as it should be, which does not happen.
 pub(super) type Answer = Option<Result<DepthResult, DepthError>>;
 
+/// A prior that bends a surface by less than this part is not felt.
+const NEGLIGIBLE: f64 = 1e-7;
+
 /// Depths of the prior beyond this many pixels are taken for unknown.
 pub(super) const MAX_PRIOR: f64 = 1e9;
 
@@ -55,11 +58,8 @@ impl Job<'_> {
     #[inline(never)]
     pub fn depth(mut self, so_far: DepthResult, converged: bool) -> Answer {
         let params = self.params;
-        let packing = Anchored { mass: params.prior_weight as f32 };
-        let anchored = params.prior_weight > 0.0 && self.input.prior.is_some();
-        if anchored {
-            self.mark_prior();
-        }
+        self.mark_prior();
+        let packing = Anchored { mass: self.anchor() };
         let Parts { grid, fine, hierarchy, buffers } = &mut self.parts;
         coarsen::build(*grid, fine.words, packing, hierarchy)?;
         let trend = Trend::fit(grid, fine.words, fine.correction, fine.direction);
@@ -75,7 +75,7 @@ impl Job<'_> {
             fine.residual,
             [whole, energies],
         );
-        if anchored {
+        if packing.mass > 0.0 {
             let prior = Prior { input: self.input, params, trend: &trend };
             prior.add(&operator, fine.residual, &mut size);
         }
@@ -103,10 +103,22 @@ impl Job<'_> {
         }))
     }
 
-    /// Notes of which pixels the prior knows the depth.
+    /// The weight of known depths in the equations: none where it is so small that the shape of no region would feel it. The
+    /// smallest curvature of a shape is about the inverse square of its length; and rounding, which has a say in the mean
+    /// depth that grows as the weight falls, would then move it far. The mean follows from the prior directly, see
+    /// [`finish`](Self::finish).
+    pub fn anchor(&self) -> f32 {
+        let Parts { grid, .. } = &self.parts;
+        let length_squared =
+            (grid.width as f64) * (grid.width as f64) + (grid.height as f64) * (grid.height as f64);
+        let is_felt = self.params.prior_weight * length_squared > NEGLIGIBLE;
+        if is_felt && self.input.prior.is_some() { self.params.prior_weight as f32 } else { 0.0 }
+    }
+
+    /// Notes of which pixels the prior knows the depth, unless it has no weight at all.
     pub fn mark_prior(&mut self) {
         let Parts { grid, fine, .. } = &mut self.parts;
-        let Some(prior) = self.input.prior else { return };
+        let Some(prior) = self.input.prior.filter(|_| self.params.prior_weight > 0.0) else { return };
         for y in 0..grid.height {
             for (word, &prior) in grid.row_mut(fine.words, y).iter_mut().zip(prior.row(y)) {
                 if *word != 0 && (f64::from(prior) / self.params.pixel_pitch).abs() <= MAX_PRIOR {
@@ -116,7 +128,7 @@ impl Job<'_> {
         }
     }
 
-    /// Puts the trend back, frees every region of its mean, scales, and marks what has no depth. Returns the number of
+    /// Puts the trend back, frees every region of its mean or of that beyond the known depths, scales, and marks what has no depth. Returns the number of
     /// regions.
     #[inline(never)]
     fn finish(&mut self, trend: &Trend) -> usize {
@@ -126,7 +138,7 @@ impl Job<'_> {
             Regions { grid: *grid, words: fine.words, sums: fine.direction, rests: fine.residual, count: 0 };
         // The paper's rectangle is the only one with pixels of weight outside the mask.
         let mask = if self.params.method == Method::Paper { self.input.mask } else { None };
-        let anchored = self.params.prior_weight > 0.0 && self.input.prior.is_some();
+        let pitch = self.params.pixel_pitch;
         for y in 0..grid.height {
             let [constant, linear, square] = trend.depth(y);
             let row = output.row_mut(y);
@@ -137,9 +149,22 @@ impl Job<'_> {
             let row = &*row;
             regions.add_row(y, |[from, to], words| {
                 let run = row.get(from..to).unwrap_or_default();
-                let anchored = anchored && words.iter().any(|&word| is_known(word));
-                let Some(mask) = mask else { return Total { count: to - from, sum: sum(run), anchored } };
-                let mut total = Total { anchored, ..Total::default() };
+                if let Some(prior) = self.input.prior
+                    && words.iter().any(|&word| is_known(word))
+                {
+                    // All equations of a region together say that known depths are right on average.
+                    let mut total = Total { anchored: true, ..Total::default() };
+                    let pixels = run.iter().zip(prior.row(y).iter().skip(from)).zip(words);
+                    for ((&z, &prior), _) in pixels.filter(|&(_, &word)| is_known(word)) {
+                        total.count += 1;
+                        total.sum += f64::from(z) - f64::from(prior) / pitch;
+                    }
+                    return total;
+                }
+                let Some(mask) = mask else {
+                    return Total { count: to - from, sum: sum(run), anchored: false };
+                };
+                let mut total = Total::default();
                 for (&z, _) in run.iter().zip(mask.row(y).iter().skip(from)).filter(|&(_, &m)| m != 0) {
                     total.count += 1;
                     total.sum += f64::from(z);
@@ -147,7 +172,6 @@ impl Job<'_> {
                 total
             });
         }
-        let pitch = self.params.pixel_pitch;
         for y in 0..grid.height {
             let row = output.row_mut(y);
             let mut done = 0;

@@ -36,7 +36,8 @@ pub struct DepthParams {
     /// Normals of which n3 / |n| is less than this lose weight, with its square, and their slope stops growing: in
     /// [0.001, 1]. Default 0.05 (slopes up to 20).
     pub min_n3: f64,
-    /// Weight of a pixel of the prior against the equation of one edge; zero ignores the prior: in [0, 1e6]. Default 1e-3.
+    /// Weight of a pixel of the prior against the equation of one edge; zero ignores the prior: in [0, 1e6]. With any other,
+    /// known depths are right on average in each region, and with the smallest that is all they do. Default 1e-3.
     pub prior_weight: f64,
     /// Weight of the squared difference of neighboring slopes against that of a pixel's slope from its data, for
     /// [`Method::Coupled`]: in [1e-3, 1e3]. Default 0.1.

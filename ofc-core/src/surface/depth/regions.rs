@@ -3,11 +3,11 @@
 use super::grid::Grid;
 use super::operator::at;
 
-/// Set in a root, whose lowest bits are the number of its pixels; a word without it is a parent's index. Both fit, because
+/// Set in a root, whose lowest bits are the number of pixels in its sum; a word without it is a parent's index. Both fit, because
 /// pictures have fewer than 2^29 pixels, and neither is zero.
 const ROOT: u32 = 1 << 31;
 
-/// Set in a root whose region holds a pixel of known depth.
+/// Set in a root whose region holds a pixel of known depth: then only such pixels are in the sum.
 const ANCHORED: u32 = 1 << 29;
 
 /// Pixels of one row without a gap: the first and the one behind the last.
@@ -35,7 +35,8 @@ pub(super) struct Regions<'a> {
     pub count: usize,
 }
 
-/// What a run has to say to its region.
+/// What a run has to say to its region: the pixels whose mean is to be zero, and the sum of what they are now. Where a depth
+/// is known that is what depth is beyond it, at all pixels of known depth.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Total {
     pub count: usize,
@@ -90,10 +91,14 @@ impl Regions<'_> {
         }
         let (root, child) = (a.min(b), a.max(b));
         let (bits, child_bits) = (self.bits(root), self.bits(child));
-        let anchored = (bits | child_bits) & ANCHORED;
-        let count = (bits & (ANCHORED - 1)) + (child_bits & (ANCHORED - 1));
-        self.set_bits(root, ROOT | anchored | count);
-        self.set_sum(root, self.sum(root) + self.sum(child));
+        let (sum, child_sum) = (self.sum(root), self.sum(child));
+        let (bits, sum) = match (bits & ANCHORED, child_bits & ANCHORED) {
+            (ANCHORED, 0) => (bits, sum),
+            (0, ANCHORED) => (child_bits, child_sum),
+            _ => (bits + (child_bits & (ANCHORED - 1)), sum + child_sum),
+        };
+        self.set_bits(root, bits);
+        self.set_sum(root, sum);
         // Indices fit: see MAX_PIXELS.
         self.set_bits(child, u32::try_from(root).unwrap_or(0));
         self.count -= 1;
@@ -134,7 +139,7 @@ impl Regions<'_> {
         let root = self.root(self.grid.start(y) + x);
         let bits = self.bits(root);
         let count = bits & (ANCHORED - 1);
-        if bits & ANCHORED != 0 || count == 0 { 0.0 } else { self.sum(root) / f64::from(count) }
+        if count == 0 { 0.0 } else { self.sum(root) / f64::from(count) }
     }
 }
 
