@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# All tests, and how long each kind of them took. run.sh --fast leaves out the emulated boards, the other targets and the
-# examples. Installs the Debian packages it lacks (.ci/packages.sh names them) as root or with sudo. Can be run again.
+# All tests, and how long each kind of them took. run.sh --fast leaves out the emulated boards, the other targets, the
+# examples and the newcomers. Installs the Debian packages it lacks (.ci/packages.sh names them) as root or with sudo. Can be run again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case ${1-} in
@@ -46,7 +46,7 @@ ctest --test-dir target/ctest --output-on-failure
 
 if [ -n "$fast" ]; then
     step
-    echo "the fast tests passed in $SECONDS s; firmware, other targets and examples were left out"
+    echo "the fast tests passed in $SECONDS s; firmware, other targets, examples and newcomers were left out"
     exit
 fi
 
