@@ -44,8 +44,8 @@
 ///   arithmetic.
 /// - NaN: pixels that are NaN or infinite are left out and counted. Parameters that are not finite are refused. The only
 ///   NaNs in outputs say "not known" or "no value here": in ofc_confidence, ofc_check_result, ofc_stream_drift, a
-///   covariance, ofc_slant_curve_sample(), ofc_depth_integrate() and ofc_flat_field(). Their bits are
-///   0x7ff8000000000000 and 0x7fc00000 on every target.
+///   covariance, ofc_paint, ofc_slant_curve_sample(), ofc_depth_integrate(), ofc_flat_field(), ofc_paint_albedo() and
+///   ofc_paint_divide(). Their bits are 0x7ff8000000000000 and 0x7fc00000 on every target.
 /// - Equations and sections are numbered as in M. S. Drew, "Direct Solution of Orientation-from-Color Problem using a
 ///   Modification of Pentland's Light Source Direction Estimator". The direct method is the method of that paper.
 
@@ -206,7 +206,7 @@ size_t ofc_depth_workspace_size(int32_t width, int32_t height);
 ///     OFC_STATUS_TOO_FEW_PIXELS when no pixel of the mask is usable; an argument status, OFC_STATUS_INVALID_PARAMETER
 ///     also for normals with p or q.
 ///
-/// Stack: below 5 KiB. Reference: section 5; J. G. Harris, "A new approach to surface reconstruction: the coupled
+/// Stack: below 4 KiB. Reference: section 5; J. G. Harris, "A new approach to surface reconstruction: the coupled
 /// depth/slope model", ICCV 1987.
 ofc_status ofc_depth_integrate(const ofc_depth_input *input, const ofc_depth_params *params, void *workspace,
                                size_t workspace_bytes, float *depth, size_t depth_stride_bytes,
@@ -226,6 +226,7 @@ const char *ofc_status_message(ofc_status status);
 #define OFC_STATUS_NO_CONSISTENT_SLANTS 4 ///< No slants agree with the tilts and with the angles between the rows of F.
 #define OFC_STATUS_NOT_CONVERGED 5     ///< An iteration ended before its tolerance; the result is what it had reached.
 #define OFC_STATUS_COLD_START_NEEDED 6 ///< The stream's model no longer fits the frame; the next frame is for colors.
+#define OFC_STATUS_PAINT_UNKNOWN 7     ///< The paint cannot be told from the shape: it is as rough, or of several hues.
 #define OFC_STATUS_NULL_POINTER (-10)  ///< A pointer that must not be NULL is NULL.
 #define OFC_STATUS_MISALIGNED (-11)    ///< A pointer or stride is not aligned for its type, or for a workspace.
 #define OFC_STATUS_OVERLAP (-12)       ///< An output overlaps an input, the workspace or another output.
@@ -1508,6 +1509,124 @@ typedef struct ofc_flat_field_result {
 ofc_status ofc_flat_field(const ofc_image *image, const ofc_image *background, float *pixels,
                           size_t pixels_stride_bytes, ofc_flat_field_result *result);
 
+/* ---- Uneven paint: C from pairs of neighbors, the albedo, and the picture without it ----------------------------- */
+
+#define OFC_PAINT_DISTANCES 3 ///< At how many distances ofc_paint_estimate() compares pixels.
+
+/// What the paint is like, or why it cannot be told from the shape: one of OFC_PAINT_*.
+typedef int32_t ofc_paint_verdict;
+
+#define OFC_PAINT_SMOOTH 1 ///< The paint is smooth against the shape: C is about as good as if the paint were known.
+/// The paint is nearly as rough as the shape: C may be twice as wrong as if the paint were known.
+#define OFC_PAINT_ROUGH 2
+#define OFC_PAINT_BUSY 3 ///< The paint is as rough as the shape, and C may be wrong.
+/// The paint has two hues or more, or hard shadows look so, and C is wrong: solve regions of one paint each.
+#define OFC_PAINT_TWO_HUES 4
+/// The colors, whatever their paint, do not determine C: normals or lights span too little.
+#define OFC_PAINT_UNDETERMINED 5
+#define OFC_PAINT_NO_ELLIPSOID 6 ///< The pixels agree on no ellipsoid, or too few differ from their neighbors.
+
+/// How ofc_paint_estimate() and what follows it work. Set by ofc_paint_params_default().
+typedef struct ofc_paint_params {
+    /// A pixel with a channel at or above this level is saturated; zero stands for the largest value of the pixel type,
+    /// and for no limit with floats. Default 0.
+    double saturation;
+    uint64_t seed;        ///< Determines every random choice. Default 0.
+    uint32_t reserved[4]; ///< Must be zero.
+} ofc_paint_params;
+
+/// What ofc_paint_estimate() found.
+typedef struct ofc_paint {
+    /// C for the median albedo: c11, c22, c33, c12, c13, c23 in (pixel value)^-2; zeros where there is none.
+    double coefficients[6];
+    /// The noise that would explain the colors by a scene that does not determine C, over the noise across the colors' direction.
+    /// Paint is in neither. Degenerate scenes reach 1.2; below 2 the verdict is OFC_PAINT_UNDETERMINED.
+    double margin;
+    double direction_noise; ///< The noise of a channel across the direction of the color, in pixel values.
+    /// How much worse the next best C explains the pixels: above 4 the paint is smooth, below 1.7 busy. NaN without a C.
+    double ratio;
+    /// How much the C of two halves of the compared pixels differ: a sphere for the one is an ellipsoid for the other, and this is the
+    /// ratio of its longest to its shortest semi-axis. Above 1.5 C is not determined. Infinite where a half has no C, NaN without
+    /// a C.
+    double disagreement;
+    /// By how many deviations steps of one hue stand out among all steps of the colors' direction; from 8 on there are two hues.
+    double hue_excess;
+    double gradient[2]; ///< The gradient of the logarithm of the albedo across the whole picture, a pixel: x, y.
+    /// The variogram of the paint: the deviation of the difference of log albedo^2 between pixels of each distance, beyond noise and
+    /// gradient. Smooth paint is below 0.1 at the shortest distance and rises, busy paint is above 0.3. NaN where too few pixels
+    /// were compared.
+    double variogram[OFC_PAINT_DISTANCES];
+    ofc_pixel_counts pixel_counts;            ///< What became of the pixels.
+    int32_t distances[OFC_PAINT_DISTANCES];   ///< The distances, in pixels.
+    int32_t pair_counts[OFC_PAINT_DISTANCES]; ///< How many pairs of pixels were compared at each distance.
+    ofc_paint_verdict verdict;                ///< What to make of these numbers.
+    uint32_t reserved;                        ///< Zero.
+} ofc_paint;
+
+/// Sets every field to its default.
+/// @param params  Output: the parameters.
+/// @return OFC_STATUS_OK; an argument status.
+ofc_status ofc_paint_params_default(ofc_paint_params *params);
+
+/// Says how many bytes of workspace ofc_paint_estimate() needs, whatever the size of the picture.
+/// @return The size, OFC_PAINT_WORKSPACE_SIZE.
+size_t ofc_paint_workspace_size(void);
+
+/// Estimates C where the paint is uneven, from pairs of neighboring pixels: they share their paint, whatever it is.
+///
+/// ofc_solve() takes the length of a color for that of its normal. Where the albedo varies by more than some percent it refuses
+/// the picture or bends C. Here it may vary from pixel to pixel, as long as it changes more slowly than the surface's direction and
+/// keeps its hue. C comes up to its scale. What follows is ofc_paint_albedo(), ofc_paint_divide(), and ofc_solve() with what
+/// that makes:
+///
+///     ofc_paint_estimate(&image, &params, workspace, bytes, &paint);
+///     ofc_paint_albedo(&image, &params, paint.coefficients, workspace, bytes, albedo, stride);
+///     ofc_paint_divide(&image, &params, albedo, stride, pixels, 3 * stride);
+///     ofc_image even = {.pixels = pixels, .width = w, .height = h, .row_stride_bytes = 3 * stride, .format = OFC_PIXEL_RGB32F};
+/// @param image  The picture.
+/// @param params  The parameters.
+/// @param workspace  ofc_paint_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param paint  Output: what was found.
+/// @return OFC_STATUS_OK for a smooth or a rough paint. OFC_STATUS_PAINT_UNKNOWN for a busy one or two hues,
+///     OFC_STATUS_RANK_DEFICIENT where C is not determined, OFC_STATUS_NOT_POSITIVE_DEFINITE where there is none: `paint` is written
+///     all the same. OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or OFC_STATUS_SATURATED for fewer than 100 usable pixels; an argument
+///     status.
+///
+/// Stack: below 16 KiB.
+ofc_status ofc_paint_estimate(const ofc_image *image, const ofc_paint_params *params, void *workspace,
+                              size_t workspace_bytes, ofc_paint *paint);
+
+/// Says how many bytes of workspace ofc_paint_albedo() needs: 8 for each pixel, and a little more.
+/// @param width,height  Size of the picture.
+/// @return The size; 0 when an argument is invalid.
+size_t ofc_paint_albedo_workspace_size(int32_t width, int32_t height);
+
+/// Makes a picture of the paint: the length of the normal that C makes of each color, averaged over a small neighborhood.
+/// @param image  The picture.
+/// @param params  The parameters.
+/// @param coefficients  C up to its scale, six numbers as ofc_paint has them.
+/// @param workspace  ofc_paint_albedo_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param albedo  Output: height rows of width floats with the median 1; NaN where a pixel is not usable.
+/// @param albedo_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS where no pixel is usable; an argument status, OFC_STATUS_INVALID_PARAMETER
+///     for a C that is not finite or not positive definite.
+ofc_status ofc_paint_albedo(const ofc_image *image, const ofc_paint_params *params, const double *coefficients,
+                            void *workspace, size_t workspace_bytes, float *albedo, size_t albedo_stride_bytes);
+
+/// Divides a picture by its albedo, as if its paint were even: for ofc_solve(), as OFC_PIXEL_RGB32F.
+/// @param image  The picture.
+/// @param params  The parameters.
+/// @param albedo  Height rows of width floats, as ofc_paint_albedo() makes them.
+/// @param albedo_stride_bytes  Bytes from one row to the next, a multiple of 4.
+/// @param pixels  Output: height rows of width (r, g, b) floats; NaN, which ofc_solve() leaves out, where a pixel is not usable
+///     or its albedo not above zero and finite.
+/// @param pixels_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @return OFC_STATUS_OK; an argument status.
+ofc_status ofc_paint_divide(const ofc_image *image, const ofc_paint_params *params, const float *albedo,
+                            size_t albedo_stride_bytes, float *pixels, size_t pixels_stride_bytes);
+
 /* ---- Segmentation, of pictures with several materials or light environments ------------------------------------- */
 
 #define OFC_MAX_REGIONS 16 ///< The largest number of regions.
@@ -1666,6 +1785,11 @@ const char *ofc_version_string(void);
 #define OFC_CHECK_WORKSPACE_SIZE(width, height) (OFC_PIXELS(width, height) * 8)
 /// What ofc_segment_workspace_size() returns.
 #define OFC_SEGMENT_WORKSPACE_SIZE(width, height) (OFC_PIXELS(width, height) * 16)
+/// What ofc_paint_workspace_size() returns.
+#define OFC_PAINT_WORKSPACE_SIZE 200000
+/// What ofc_paint_albedo_workspace_size() returns.
+#define OFC_PAINT_ALBEDO_WORKSPACE_SIZE(width, height)                                                                 \
+    ((OFC_PIXELS(width, height) + OFC_LARGER(OFC_SIZE(width), OFC_SIZE(height))) * 8)
 /// What ofc_stream_size() returns at most for the default sample_size.
 #define OFC_STREAM_SIZE(width, height) OFC_STREAM_SIZE_FOR(width, height, 2048)
 /// What ofc_stream_size() returns at most for this sample_size.

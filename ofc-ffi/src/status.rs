@@ -5,6 +5,8 @@ use core::ffi::{CStr, c_char};
 use ofc_core::check::CheckError;
 use ofc_core::color::ellipsoid::NotPositiveDefinite;
 use ofc_core::color::lmeds::FitError;
+use ofc_core::color::paint::PaintError;
+use ofc_core::color::paint::albedo::AlbedoError;
 use ofc_core::color::segment::SegmentError;
 use ofc_core::orientation::orthogonal::OrthogonalError;
 use ofc_core::picture::ImageError;
@@ -36,6 +38,8 @@ pub const OFC_STATUS_NO_CONSISTENT_SLANTS: i32 = 4;
 pub const OFC_STATUS_NOT_CONVERGED: i32 = 5;
 /// The stream's model no longer fits the frame; the next frame is for colors.
 pub const OFC_STATUS_COLD_START_NEEDED: i32 = 6;
+/// The paint cannot be told from the shape: it is as rough, or of several hues.
+pub const OFC_STATUS_PAINT_UNKNOWN: i32 = 7;
 
 /// A pointer that must not be NULL is NULL.
 pub const OFC_STATUS_NULL_POINTER: i32 = -10;
@@ -95,6 +99,7 @@ fn message(status: ofc_status) -> &'static CStr {
         OFC_STATUS_NO_CONSISTENT_SLANTS => c"no slants are consistent with the tilts and the cosines (eqs. 25 have no root)",
         OFC_STATUS_NOT_CONVERGED => c"not converged: the iteration ended before it reached its tolerance",
         OFC_STATUS_COLD_START_NEEDED => c"the model no longer fits: a cold start is needed",
+        OFC_STATUS_PAINT_UNKNOWN => c"the paint cannot be told from the shape: it is as rough, or of several hues",
         OFC_STATUS_NULL_POINTER => c"a pointer is NULL",
         OFC_STATUS_MISALIGNED => c"a pointer or stride is not aligned for its type",
         OFC_STATUS_OVERLAP => c"an output overlaps another buffer",
@@ -218,6 +223,17 @@ refusals! {
         FlatFieldError::Size => OFC_STATUS_INVALID_PARAMETER,
         FlatFieldError::Output => OFC_STATUS_STRIDE_TOO_SMALL,
         FlatFieldError::Background => OFC_STATUS_DARK,
+    }
+    PaintError {
+        PaintError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
+        PaintError::TooFewPixels => OFC_STATUS_TOO_FEW_PIXELS,
+        PaintError::Dark => OFC_STATUS_DARK,
+        PaintError::Saturated => OFC_STATUS_SATURATED,
+    }
+    AlbedoError {
+        AlbedoError::Rows => OFC_STATUS_STRIDE_TOO_SMALL,
+        AlbedoError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
+        AlbedoError::TooFewPixels => OFC_STATUS_TOO_FEW_PIXELS,
     }
     SegmentError {
         SegmentError::Params => OFC_STATUS_INVALID_PARAMETER,

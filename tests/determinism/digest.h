@@ -37,6 +37,7 @@ void mix_integrability(const ofc_integrability *integrability);
 void mix_orthogonal(const ofc_orthogonal *found);
 void mix_rendering(const ofc_rendering *rendering);
 void mix_region(const ofc_region *region);
+void mix_paint_estimate(const ofc_paint *paint);
 void mix_lmeds_params(const ofc_lmeds_params *params);
 void mix_solve_params(const ofc_solve_params *params);
 void mix_render_params(const ofc_render_params *params);

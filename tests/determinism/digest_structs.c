@@ -221,6 +221,23 @@ void mix_rendering(const ofc_rendering *rendering)
     ARRAY(rendering->f);
 }
 
+void mix_paint_estimate(const ofc_paint *paint)
+{
+    ARRAY(paint->coefficients);
+    NUMBER(paint->margin);
+    NUMBER(paint->direction_noise);
+    NUMBER(paint->ratio);
+    NUMBER(paint->disagreement);
+    NUMBER(paint->hue_excess);
+    ARRAY(paint->gradient);
+    ARRAY(paint->variogram);
+    mix_pixel_counts(&paint->pixel_counts);
+    INTEGERS(paint->distances);
+    INTEGERS(paint->pair_counts);
+    INTEGER(paint->verdict);
+    INTEGER(paint->reserved);
+}
+
 void mix_region(const ofc_region *region)
 {
     ARRAY(region->coefficients);

@@ -27,6 +27,7 @@ void mix_solve(const ofc_image *image, int variant);
 ofc_depth_map mix_depth(const ofc_image *image);
 void mix_stream(const ofc_image *image);
 void mix_flat_field(const ofc_image *image);
+void mix_paint(const ofc_image *image);
 void mix_segments(const ofc_image *image, const struct fitted *fitted);
 
 /* What the stages share: room for the largest workspace, and outputs a pixel. */

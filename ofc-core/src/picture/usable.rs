@@ -44,6 +44,13 @@ impl Usable {
             })
     }
 
+    /// Whether a pixel of this color, if it is in the mask, is usable: for those that are looked at one by one.
+    pub(crate) fn accepts(&self, color: [f32; 3]) -> bool {
+        color.iter().all(|value| value.is_finite() && *value < self.saturation)
+            && color.iter().any(|&value| value > 0.0)
+            && self.shadow_faces.is_lit(color)
+    }
+
     /// Counts the pixels of a picture by what becomes of them.
     #[must_use]
     pub fn count(&self, image: &Image) -> PixelCounts {
@@ -131,6 +138,8 @@ mod tests {
                         && color.iter().all(|c| c.is_finite() && *c < saturation)
                         && color.iter().any(|&c| c > 0.0);
                     assert_eq!(bits >> i & 1 == 1, expected, "{color:?} below {saturation}");
+                    let accepted = window.masked >> i & 1 == 1 && Usable::below(saturation).accepts(color);
+                    assert_eq!(accepted, expected, "{color:?} below {saturation}");
                 }
             }
         }

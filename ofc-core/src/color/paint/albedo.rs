@@ -77,44 +77,33 @@ pub fn albedo(
     let radius = (count.isqrt() / SHARE_OF_SIZE).max(1);
     for plane in [&mut *logarithms, &mut *weights] {
         for row in 0..height {
-            let Some((line, sums)) = two(lines, width) else { break };
-            sum_twice(
-                plane.get_mut(row * width..(row + 1) * width).unwrap_or_default(),
-                (0, 1),
-                [line, sums],
-                radius,
-            );
+            sum_twice(plane, Line { start: row * width, step: 1, len: width }, lines, radius);
         }
         for column in 0..width {
-            let Some((line, sums)) = two(lines, height) else { break };
-            sum_twice(plane, (column, width), [line, sums], radius);
+            sum_twice(plane, Line { start: column, step: width, len: height }, lines, radius);
         }
     }
     for (logarithm, weight) in logarithms.iter_mut().zip(&*weights) {
         *logarithm /= weight.max(f32::MIN_POSITIVE);
     }
     let mut number = 0;
-    let each = |visit: &mut dyn FnMut(usize, usize, usize)| {
-        image.for_each_window(|window| {
-            for_each_bit(usable.bits(window), |i| {
-                visit(window.x + i, window.y, window.y * width + window.x + i);
-            });
+    image.for_each_window(|window| {
+        let own = logarithms.get(window.y * width + window.x..).unwrap_or_default();
+        for_each_bit(usable.bits(window), |i| {
+            if let (Some(slot), Some(&logarithm)) = (weights.get_mut(number), own.get(i)) {
+                *slot = logarithm;
+                number += 1;
+            }
         });
-    };
-    each(&mut |_, _, at| {
-        if let (Some(slot), Some(&logarithm)) = (weights.get_mut(number), logarithms.get(at)) {
-            *slot = logarithm;
-            number += 1;
-        }
     });
     let all = weights.get(..count).unwrap_or_default();
     let median = kth_smallest(all, median_rank(count)).unwrap_or(0.0);
-    for row in out.chunks_mut(row_stride).take(height) {
-        row.get_mut(..width).unwrap_or_default().fill(f32::NAN);
-    }
-    each(&mut |x, y, at| {
-        if let (Some(slot), Some(&logarithm)) = (out.get_mut(y * row_stride + x), logarithms.get(at)) {
-            *slot = expf(logarithm - median);
+    image.for_each_window(|window| {
+        let bits = usable.bits(window);
+        let own = logarithms.get(window.y * width + window.x..).unwrap_or_default();
+        let out = out.get_mut(window.y * row_stride + window.x..).unwrap_or_default();
+        for (i, (slot, &logarithm)) in out.iter_mut().zip(own).take(window.len).enumerate() {
+            *slot = if bits >> i & 1 == 1 { expf(logarithm - median) } else { f32::NAN };
         }
     });
     Ok(())
@@ -148,31 +137,42 @@ fn read(
     count
 }
 
-/// Two lines of this length.
-fn two(lines: &mut [f32], len: usize) -> Option<(&mut [f32], &mut [f32])> {
-    lines.get_mut(..2 * len)?.split_at_mut_checked(len)
+/// A row or a column of a plane.
+#[derive(Clone, Copy)]
+struct Line {
+    start: usize,
+    step: usize,
+    len: usize,
 }
 
-/// Takes the sum over 2 `radius` + 1 neighbors twice along a line of `plane`, every `step`-th value from `start` on, with zeros
-/// beyond the ends.
-fn sum_twice(plane: &mut [f32], (start, step): (usize, usize), lines: [&mut [f32]; 2], radius: usize) {
-    let values = plane.get_mut(start..).unwrap_or_default();
-    let [line, sums] = lines;
-    for (slot, value) in line.iter_mut().zip(values.iter().step_by(step)) {
-        *slot = *value;
+/// Takes the sum over 2 `radius` + 1 neighbors twice along a line of `plane`, with zeros beyond its ends. `scratch` has room for two
+/// lines.
+fn sum_twice(plane: &mut [f32], Line { start, step, len }: Line, scratch: &mut [f32], radius: usize) {
+    let Some((line, rest)) = scratch.split_at_mut_checked(len) else { return };
+    let sums = rest.get_mut(..len).unwrap_or_default();
+    for (i, slot) in line.iter_mut().enumerate() {
+        *slot = plane.get(start + i * step).copied().unwrap_or(0.0);
     }
-    sum(line, sums.iter_mut(), radius);
-    sum(sums, values.iter_mut().step_by(step), radius);
+    sum(line, radius, |i, sum| {
+        if let Some(slot) = sums.get_mut(i) {
+            *slot = sum;
+        }
+    });
+    sum(sums, radius, |i, sum| {
+        if let Some(slot) = plane.get_mut(start + i * step) {
+            *slot = sum;
+        }
+    });
 }
 
-/// The sum over 2 `radius` + 1 neighbors, with zeros beyond the ends.
-fn sum<'p>(line: &[f32], out: impl Iterator<Item = &'p mut f32>, radius: usize) {
+/// The sums over 2 `radius` + 1 neighbors, with zeros beyond the ends.
+fn sum(line: &[f32], radius: usize, mut put: impl FnMut(usize, f32)) {
     let at =
         |place: Option<usize>| place.and_then(|place| line.get(place)).map_or(0.0, |&value| f64::from(value));
     let mut sum: f64 = line.iter().take(radius).map(|&value| f64::from(value)).sum();
-    for (i, slot) in out.enumerate() {
+    for i in 0..line.len() {
         sum += at(i.checked_add(radius)) - at(i.checked_sub(radius + 1));
-        *slot = sum as f32;
+        put(i, sum as f32);
     }
 }
 

@@ -7,7 +7,7 @@
 
 use super::sampler::Sampler;
 use core::f64::consts::TAU;
-use libm::{cos, log, round, sin, sqrt};
+use libm::{cos, logf, round, sin, sqrt};
 
 /// Pixels that are drawn for each distance at most.
 const DRAWS: usize = 30_000;
@@ -80,7 +80,7 @@ fn step(sampler: &mut Sampler, distance: f64, darkest: f64) -> Option<[f32; 2]> 
         let [dx, dy] = [k * dx, k * dy].map(|step| round(step) as isize);
         let at = [x.checked_add_signed(dx)?, y.checked_add_signed(dy)?];
         let [color] = sampler.row::<1>(at)?;
-        *slot = direction(color.map(f64::from), darkest)?;
+        *slot = direction(color, darkest)?;
     }
     let [first, second, third, fourth] = directions;
     let before = minus(second, first);
@@ -98,10 +98,10 @@ fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 /// The logarithms of the channels without their mean, in two orthogonal directions.
-fn direction(color: [f64; 3], darkest: f64) -> Option<[f64; 2]> {
-    if !color.iter().all(|&value| value > darkest) {
+fn direction(color: [f32; 3], darkest: f64) -> Option<[f64; 2]> {
+    if !color.iter().all(|&value| f64::from(value) > darkest) {
         return None;
     }
-    let [r, g, b] = color.map(log);
+    let [r, g, b] = color.map(|value| f64::from(logf(value)));
     Some([(r - g) / sqrt(2.0), (r + g - 2.0 * b) / sqrt(6.0)])
 }

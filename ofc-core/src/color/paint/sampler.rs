@@ -1,7 +1,7 @@
 //! Random pixels of a picture, and what lies around them.
 
 use crate::math::rng::Rng;
-use crate::picture::{Image, Sample, Usable, Window, for_each_bit};
+use crate::picture::{Image, Sample, Usable, Window, first_bits};
 
 /// The side of the square that colors are averaged over: single pixels are too noisy to compare directions by, and fine texture of
 /// the paint is averaged away with the noise.
@@ -48,28 +48,29 @@ impl<'a> Sampler<'a> {
 
     /// `N` neighbors of one row, the first one here; `None` unless all are usable.
     pub(super) fn row<const N: usize>(&mut self, at: [usize; 2]) -> Option<[[f32; 3]; N]> {
-        self.image.crop(at, [N, 1])?.read(0, 0, &mut self.window);
-        let all = (1 << N) - 1;
-        (self.usable.bits(&self.window) & all == all).then(|| core::array::from_fn(|i| self.window.pixel(i)))
+        self.read::<N>(&self.image.crop(at, [N, 1])?, 0)
     }
 
     /// The mean of the three by three pixels around this one; `None` unless all are usable.
     pub(super) fn mean(&mut self, [x, y]: [usize; 2]) -> Option<[f64; 3]> {
-        let corner = [x.checked_sub(1)?, y.checked_sub(1)?];
-        let square = self.image.crop(corner, [SIDE; 2])?;
+        let square = self.image.crop([x.checked_sub(1)?, y.checked_sub(1)?], [SIDE; 2])?;
         let mut sum = [0.0; 3];
         for row in 0..SIDE {
-            square.read(0, row, &mut self.window);
-            let bits = self.usable.bits(&self.window);
-            if bits & 0b111 != 0b111 {
-                return None;
-            }
-            for_each_bit(0b111, |i| {
-                for (sum, value) in sum.iter_mut().zip(self.window.pixel(i)) {
+            for color in self.read::<SIDE>(&square, row)? {
+                for (sum, value) in sum.iter_mut().zip(color) {
                     *sum += f64::from(value);
                 }
-            });
+            }
         }
         Some(sum.map(|sum| sum / (SIDE * SIDE) as f64))
+    }
+
+    fn read<const N: usize>(&mut self, part: &Image, row: usize) -> Option<[[f32; 3]; N]> {
+        part.read(0, row, &mut self.window);
+        let colors = core::array::from_fn(|i| self.window.pixel(i));
+        let all = first_bits(N);
+        let is_usable =
+            self.window.masked & all == all && colors.iter().all(|&color| self.usable.accepts(color));
+        is_usable.then_some(colors)
     }
 }
