@@ -206,7 +206,7 @@ size_t ofc_depth_workspace_size(int32_t width, int32_t height);
 ///     OFC_STATUS_TOO_FEW_PIXELS when no pixel of the mask is usable; an argument status, OFC_STATUS_INVALID_PARAMETER
 ///     also for normals with p or q.
 ///
-/// Stack: below 4 KiB. Reference: section 5; J. G. Harris, "A new approach to surface reconstruction: the coupled
+/// Stack: below 5 KiB. Reference: section 5; J. G. Harris, "A new approach to surface reconstruction: the coupled
 /// depth/slope model", ICCV 1987.
 ofc_status ofc_depth_integrate(const ofc_depth_input *input, const ofc_depth_params *params, void *workspace,
                                size_t workspace_bytes, float *depth, size_t depth_stride_bytes,
