@@ -6,6 +6,7 @@
 #include "photo/options.hpp"
 #include "photo/overview.hpp"
 #include "photo/paper_report.hpp"
+#include "photo/relief.hpp"
 #include "photo/report.hpp"
 #include "photo/solve.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 // What a run may write into its folder, but for the planes of --save-planes, which may be the next run's input.
 constexpr const char *const outputs[] = {"report.json",      "inliers.png",     "overview.png", "normals.png",
                                          "normals.tiff",     "uncertainty.png", "depth.tiff",   "depth.png",
-                                         "uncertainty.tiff", "mesh.ply"};
+                                         "uncertainty.tiff", "mesh.ply",        "classes.png"};
 
 int run(const Options &options)
 {
@@ -33,8 +34,12 @@ int run(const Options &options)
         truth = scene.normals;
         true_f = scene.f;
     }
-    if (!options.background.empty())
-        picture = flattened(picture, read_picture(options.background), options.background);
+    const Picture undivided = picture;
+    std::optional<Picture> background;
+    if (!options.background.empty()) {
+        background = read_picture(options.background);
+        picture = flattened(picture, *background, options.background);
+    }
     if (!options.mask.empty())
         picture.mask = read_mask(options.mask, picture.size());
     if (!options.truth.empty())
@@ -47,6 +52,33 @@ int run(const Options &options)
     for (const char *name : paper_figures)
         std::filesystem::remove(out / name);
 
+    // The other model, whose picture is not divided by the background, and what the first one said, if it was asked.
+    const auto relief = [&](const Result *ellipsoid) {
+        Picture frame = undivided;
+        frame.mask = picture.mask;
+        const auto solve_frame = [&] {
+            return solve_relief(frame, background ? &*background : nullptr, options.relief_params(), options.depth, truth);
+        };
+        ReliefResult found = solve_frame();
+        if (!found.solved() && !picture.mask.empty()) {
+            // A mask around the relief hides the plane that it rises from.
+            frame.mask.release();
+            found = solve_frame();
+            found.restrict_to(picture.mask);
+        }
+        if (found.solved() || ellipsoid == nullptr) {
+            write_relief(out.string(), frame, found, ellipsoid);
+            if (ellipsoid != nullptr)
+                std::printf("%-10s %s\n", "ellipsoid", ofc_status_message(ellipsoid->status));
+            for (const Line &line : summary(found))
+                std::fprintf(found.solved() ? stdout : stderr, "%-10s %s\n", line.label.c_str(), line.text.c_str());
+            say_where(out, found.solved() ? "overview.png" : "report.json");
+        }
+        return found;
+    };
+    if (options.model == "relief")
+        return relief(nullptr).solved() ? 0 : 1;
+
     const auto solve_by = [&](ofc_orientation_method method) {
         Result result = solve(picture, options.solve_params(method), options.shadows, options.depth);
         result.true_f = true_f;
@@ -57,6 +89,8 @@ int run(const Options &options)
     Result result = solve_by(options.direct() ? OFC_ORIENTATION_DIRECT : OFC_ORIENTATION_JOINT);
     if (result.solved())
         time_stages(picture, result);
+    else if (options.model == "auto" && !options.paper_report() && result.status >= 0 && relief(&result).solved())
+        return 0;
 
     if (options.save_planes) {
         const cv::Mat channels[] = {picture.channel(0), picture.channel(1), picture.channel(2)};

@@ -44,8 +44,9 @@
 ///   arithmetic.
 /// - NaN: pixels that are NaN or infinite are left out and counted. Parameters that are not finite are refused. The only
 ///   NaNs in outputs say "not known" or "no value here": in ofc_confidence, ofc_check_result, ofc_stream_drift, a
-///   covariance, ofc_paint, ofc_slant_curve_sample(), ofc_depth_integrate(), ofc_flat_field(), ofc_paint_albedo() and
-///   ofc_paint_divide(). Their bits are 0x7ff8000000000000 and 0x7fc00000 on every target.
+///   covariance, ofc_paint, ofc_slant_curve_sample(), ofc_depth_integrate(), ofc_flat_field(), ofc_relief_normals(),
+///   ofc_relief, ofc_paint_albedo() and ofc_paint_divide(). Their bits are 0x7ff8000000000000 and 0x7fc00000 on every
+///   target.
 /// - Equations and sections are numbered as in M. S. Drew, "Direct Solution of Orientation-from-Color Problem using a
 ///   Modification of Pentland's Light Source Direction Estimator". The direct method is the method of that paper.
 
@@ -227,6 +228,7 @@ const char *ofc_status_message(ofc_status status);
 #define OFC_STATUS_NOT_CONVERGED 5     ///< An iteration ended before its tolerance; the result is what it had reached.
 #define OFC_STATUS_COLD_START_NEEDED 6 ///< The stream's model no longer fits the frame; the next frame is for colors.
 #define OFC_STATUS_PAINT_UNKNOWN 7     ///< The paint cannot be told from the shape: it is as rough, or of several hues.
+#define OFC_STATUS_NO_RELIEF 8         ///< The picture shows no relief on a plane; the result says why.
 #define OFC_STATUS_NULL_POINTER (-10)  ///< A pointer that must not be NULL is NULL.
 #define OFC_STATUS_MISALIGNED (-11)    ///< A pointer or stride is not aligned for its type, or for a workspace.
 #define OFC_STATUS_OVERLAP (-12)       ///< An output overlaps an input, the workspace or another output.
@@ -265,6 +267,14 @@ typedef int32_t ofc_fit_method;
 #define OFC_FIT_LEAST_MEDIAN 0  ///< Least median of squares, as in the paper.
 #define OFC_FIT_LEAST_SQUARES 1 ///< Least squares over every usable pixel, for pictures without outliers.
 
+/// How much each pixel counts in the search of the fit: one of OFC_WEIGHTING_*.
+typedef int32_t ofc_weighting;
+
+/// All pixels alike; but where one color is the majority, as in the picture of a mostly flat surface, and leaves C open, a pixel
+/// counts by how rare its color is, if that determines C clearly. Streams take all pixels alike.
+#define OFC_WEIGHTING_AUTO 0
+#define OFC_WEIGHTING_PIXELS 1 ///< All pixels alike, as in the paper.
+
 /// How the regression in color space searches and what it rejects. Set by ofc_lmeds_params_default().
 typedef struct ofc_lmeds_params {
     double confidence;        ///< Probability that at least one subset holds no outlier, in (0, 1). Default 0.9999.
@@ -281,8 +291,9 @@ typedef struct ofc_lmeds_params {
     uint32_t subsets;
     /// How many pixels the search uses, at least 12; the result is evaluated on all pixels. Default 10,000.
     uint32_t sample_size;
-    ofc_fit_method method; ///< One of OFC_FIT_*. Default OFC_FIT_LEAST_MEDIAN.
-    uint32_t reserved[4];  ///< Must be zero.
+    ofc_fit_method method;   ///< One of OFC_FIT_*. Default OFC_FIT_LEAST_MEDIAN.
+    ofc_weighting weighting; ///< One of OFC_WEIGHTING_*. Default OFC_WEIGHTING_AUTO.
+    uint32_t reserved[3];    ///< Must be zero.
 } ofc_lmeds_params;
 
 /// An estimator of tilts: one of OFC_TILT_*.
@@ -415,6 +426,10 @@ typedef struct ofc_color_fit {
     double degenerate_noise_deviation;
     int32_t inlier_count; ///< How many pixels have a residual that is accepted.
     uint32_t subsets;     ///< How many subsets were drawn.
+    /// 1 where pixels counted by how rare their colors are, see OFC_WEIGHTING_AUTO: all but the count of inliers is then of a sample
+    /// that is so weighted. 0 otherwise.
+    int32_t by_colors;
+    uint32_t reserved; ///< Zero.
 } ofc_color_fit;
 
 /// Effective ranks of colors and normals, and the singular values behind them. F is determined where both ranks are 3.
@@ -1626,6 +1641,131 @@ ofc_status ofc_paint_albedo(const ofc_image *image, const ofc_paint_params *para
 /// @return OFC_STATUS_OK; an argument status.
 ofc_status ofc_paint_divide(const ofc_image *image, const ofc_paint_params *params, const float *albedo,
                             size_t albedo_stride_bytes, float *pixels, size_t pixels_stride_bytes);
+
+/* ---- A relief on a plane, for pictures most of which is one flat surface ----------------------------------------- */
+
+/// Where the scale of a relief's slopes comes from: one of OFC_SCALE_*.
+typedef int32_t ofc_scale_source;
+
+#define OFC_SCALE_UNKNOWN 0 ///< It is unknown: slopes and depths are right up to a factor, and a usual one is taken.
+#define OFC_SCALE_COLORS 1  ///< From the bend of the colors of the inner contact.
+#define OFC_SCALE_BALL 2    ///< From the radius of the ball that was given.
+
+/// Why a picture shows no relief on a plane: one of OFC_NO_RELIEF_*, whose numbers are never reused; 0 where it shows one.
+typedef int32_t ofc_no_relief;
+
+#define OFC_NO_RELIEF_UNTOUCHED 1 ///< Nothing differs from the plane.
+#define OFC_NO_RELIEF_NO_PLANE 2  ///< More than half of the picture differs from the plane.
+/// The slopes have one direction, as those of a groove, or do not stand out of the noise.
+#define OFC_NO_RELIEF_NOT_DETERMINED 3
+/// What differs from the plane is paint, spots, highlights or shadows: its slopes would not be those of a surface.
+#define OFC_NO_RELIEF_NOT_INTEGRABLE 4
+/// What differs from the plane has an edge: it lies on the plane rather than rises from it, or it is paint.
+#define OFC_NO_RELIEF_EDGE 5
+
+/// What a pixel of a relief is part of: one of OFC_RELIEF_*.
+typedef uint8_t ofc_relief_class;
+
+#define OFC_RELIEF_NONE 0    ///< The pixel is masked out or its surroundings have no usable color: there is no normal.
+#define OFC_RELIEF_PLANE 1   ///< The untouched plane: its normal is (0, 0, 1).
+#define OFC_RELIEF_SKIRT 2   ///< The surroundings of the contact, where the relief comes up from the plane.
+#define OFC_RELIEF_CONTACT 3 ///< The contact: what differs from the plane by more than noise.
+
+/// What is known of a relief beforehand. Set by ofc_relief_params_default().
+typedef struct ofc_relief_params {
+    /// A pixel with a channel at or above this level is saturated; zero stands for the largest value of the pixel type,
+    /// and for no limit with floats. Default 0.
+    double saturation;
+    /// The radius in pixels of the one ball that is pressed in: it gives the scale of the slopes. 0 where there is none. Default 0.
+    double ball_radius;
+    uint64_t seed; ///< Determines every random choice. Default 0.
+    /// One of OFC_CONVEXITY_*: OFC_CONVEXITY_HOLLOW for a dent or an engraving, and otherwise the relief rises toward the camera, as a
+    /// gel does where something is pressed into it. Default OFC_CONVEXITY_AUTO.
+    ofc_convexity convexity;
+    uint32_t reserved[3]; ///< Must be zero.
+} ofc_relief_params;
+
+/// A relief on a plane: what turns colors into its normals, and how far to trust them.
+typedef struct ofc_relief {
+    /// W, 2 x 3 and row-major: (n1, n2) = W delta, where delta is the color of a pixel divided by that of the plane, less 1, channel by
+    /// channel.
+    double slopes[6];
+    /// The color of the plane by a polynomial of order 4, 15 coefficients a channel, in pixel values. The terms are 1, x, y, x^2, xy, y^2
+    /// and so on; x goes from -1 to 1 across the picture and y from -1 to 1 down. Where a background was given it tells dark spots only.
+    double plane[45];
+    double noise[3]; ///< The standard deviation of each channel of a cell of the plane, relative to its color.
+    /// The mean squared circulation of the slopes relative to their energy: 0 for a perfect relief, above 0.3 for paint, spots and shadows.
+    double circulation;
+    double circulation_ratio; ///< The circulation relative to that of the second best W: near 1 for a groove.
+    double anisotropy;        ///< The variance of the slopes across the relief over that along it: 0 for a groove.
+    double signal_to_noise;   ///< The smaller standard deviation of the slopes in the contact over that of their noise.
+    /// The root mean square of the step of the slopes across the border of the contact over that of the slopes in it: near 1 for what
+    /// has an edge.
+    double border;
+    /// How surely the normals point outward, from 0, where nothing is known, to 1: that chooses the sign of W.
+    double outward;
+    double scale_deviation; ///< The standard deviation of the logarithm of the scale: 0.1 stands for 10 %.
+    /// The share of the normals' variance by which they disagree with the ellipsoid of the contact's colors; NaN where the colors have no
+    /// ellipsoid.
+    double disagreement;
+    double tilt;                   ///< The root mean square of the sines of the contact's slants.
+    double expected_error;         ///< The expected median error of the normals in the contact, in radians.
+    ofc_scale_source scale_source; ///< Where the scale comes from, one of OFC_SCALE_*.
+    int32_t has_background;        ///< 1 where a picture of the plane was given, 0 otherwise.
+    ofc_no_relief reason;          ///< Why there is no relief, one of OFC_NO_RELIEF_*; 0 where there is one.
+    int32_t width;                 ///< Width of the picture.
+    int32_t height;                ///< Height of the picture.
+    /// How many cells have no color, lie on the plane, in the skirt, and in the contact. A cell is a square of pixels, some 160 of them
+    /// are in the longer side of the picture.
+    int32_t cells[4];
+    uint32_t reserved; ///< Zero.
+} ofc_relief;
+
+/// Sets every field to its default.
+/// @param params  Output: the parameters.
+/// @return OFC_STATUS_OK; an argument status.
+ofc_status ofc_relief_params_default(ofc_relief_params *params);
+
+/// Says how many bytes of workspace ofc_relief_solve() needs: 36 for each cell of the picture, at most 2.1 MB.
+/// @param width,height  Size of the picture, at least 32 pixels and less than about five times as long as wide.
+/// @return The size; 0 when an argument is invalid.
+size_t ofc_relief_workspace_size(int32_t width, int32_t height);
+
+/// Finds the plane that most of a picture shows, and what turns colors into the normals of the relief on it.
+///
+/// Call it for the whole frames of a tactile sensor, a dent in a plate, a coin: where most of the picture is one flat, uniformly colored
+/// surface. ofc_solve() refuses such a picture where it is not that of a matte surface around black, as no gel is. Lights may be near,
+/// no mask is needed, and spots that are dark in all channels, as the markers of a gel, are left out.
+/// @param image  The picture.
+/// @param background  A picture of the plane alone, of the same size; NULL to estimate the plane from the picture itself.
+/// @param params  The parameters.
+/// @param workspace  ofc_relief_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param classes  Output: width x height bytes, rows without gaps: one of OFC_RELIEF_* for each pixel.
+/// @param relief  Output: the relief.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_RELIEF with the reason in `relief`, whose other fields are zero, and `classes` untouched;
+///     OFC_STATUS_EMPTY for a picture that is too small; OFC_STATUS_TOO_FEW_PIXELS; an argument status.
+///
+/// Stack: below 8 KiB. Reference: docs/relief.md.
+ofc_status ofc_relief_solve(const ofc_image *image, const ofc_image *background, const ofc_relief_params *params,
+                            void *workspace, size_t workspace_bytes, ofc_relief_class *classes, ofc_relief *relief);
+
+/// Computes the unit normals of a relief, and how sure each of them is. The picture may be another one of the same plane under the same
+/// lights, with the classes of its own.
+/// @param image  The picture.
+/// @param background  The picture of the plane where ofc_relief_solve() had one, and NULL where it had none.
+/// @param relief  What ofc_relief_solve() found.
+/// @param classes  Its classes, width x height bytes.
+/// @param normals  Output: height rows of width (n1, n2, n3) floats: (0, 0, 1) on the plane, NaN where there is no usable color.
+/// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4.
+/// @param uncertainty  Output: height rows of width floats, the standard deviation of the angle in radians: 0 on the plane, NaN where
+///     there is no normal. NULL where it is not wanted.
+/// @param uncertainty_stride_bytes  Bytes from one row to the next, a multiple of 4; not read where `uncertainty` is NULL.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED for a struct that holds no relief; an argument status, OFC_STATUS_INVALID_PARAMETER for
+///     a picture of another size.
+ofc_status ofc_relief_normals(const ofc_image *image, const ofc_image *background, const ofc_relief *relief,
+                              const ofc_relief_class *classes, float *normals, size_t normals_stride_bytes,
+                              float *uncertainty, size_t uncertainty_stride_bytes);
 
 /* ---- Segmentation, of pictures with several materials or light environments ------------------------------------- */
 

@@ -23,6 +23,16 @@ ofc_solve_params Options::solve_params(ofc_orientation_method method) const
     return params;
 }
 
+ofc_relief_params Options::relief_params() const
+{
+    ofc_relief_params params;
+    ofc_relief_params_default(&params);
+    params.seed = seed;
+    params.ball_radius = ball_radius;
+    params.convexity = hollow ? OFC_CONVEXITY_HOLLOW : OFC_CONVEXITY_AUTO;
+    return params;
+}
+
 Options parse_options(int argc, char **argv)
 {
     Options options;
@@ -53,6 +63,14 @@ Options parse_options(int argc, char **argv)
         ->check(CLI::IsMember({"joint", "direct"}));
     auto *convex = line.add_flag("--convex", options.convex, "The surface is raised: no doubt about it");
     line.add_flag("--hollow", options.hollow, "The surface is hollow: an engraving, a mold, a pit")->excludes(convex);
+    line.add_option("--model", options.model,
+                    "What turns colors into normals: ellipsoid is the paper's, relief is that of a picture most of which is one flat\n"
+                    "surface, as the frame of a tactile sensor; auto takes it where the first refuses (default: auto)")
+        ->check(CLI::IsMember({"auto", "ellipsoid", "relief"}));
+    line.add_option("--ball-radius", options.ball_radius,
+                    "Radius in pixels of the one ball that is pressed into the surface: it gives a relief its scale")
+        ->check(CLI::PositiveNumber)
+        ->type_name("PX");
     options.shadows.add_to(line);
     options.depth.add_to(line);
     line.add_option("--report", options.report,

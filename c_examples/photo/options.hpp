@@ -14,6 +14,8 @@ struct Options {
     std::uint64_t seed = 0;
     std::uint32_t subsets = 0; // as many as needed
     std::string fit = "median", orientation = "joint", report = "short";
+    std::string model = "auto"; // auto, ellipsoid or relief
+    double ball_radius = 0;     // in pixels; 0 where not given
     ShadowOption shadows;
     DepthOptions depth;
     bool convex = false, hollow = false; // what the caller knows of the surface
@@ -23,6 +25,8 @@ struct Options {
     bool direct() const { return orientation == "direct"; }
     bool paper_report() const { return report == "paper"; }
 
+    // What is known of a relief on a plane.
+    ofc_relief_params relief_params() const;
     // How to solve with this orientation method.
     ofc_solve_params solve_params(ofc_orientation_method method) const;
 };

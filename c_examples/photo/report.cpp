@@ -134,7 +134,8 @@ json found(bool is_there, json value)
     return is_there ? std::move(value) : json(nullptr);
 }
 
-// A long line becomes several, of which only the first has the label.
+} // namespace
+
 void add_wrapped(std::vector<Line> &lines, std::string label, std::string text)
 {
     constexpr std::size_t width = 180;
@@ -147,8 +148,6 @@ void add_wrapped(std::vector<Line> &lines, std::string label, std::string text)
     }
     lines.push_back({label, text});
 }
-
-} // namespace
 
 cv::Mat uncertainty_picture(const Result &result, cv::Rect part)
 {

@@ -6,7 +6,7 @@
 //! normal, which [`norms`] and [`location`] find. [`shadows`] finds colors that a light does not reach, [`paint`] fits C
 //! where the albedo is uneven, [`rank`] counts the dimensions of colors and normals, and [`segment`] separates materials.
 
-mod dispersion;
+pub(crate) mod dispersion;
 pub mod ellipsoid;
 pub mod inliers;
 pub mod lmeds;

@@ -4,6 +4,7 @@
 
 pub mod angle;
 pub mod arena;
+pub mod cholesky;
 pub mod mat3;
 pub mod mat6;
 pub mod pencil;

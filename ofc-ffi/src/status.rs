@@ -40,6 +40,8 @@ pub const OFC_STATUS_NOT_CONVERGED: i32 = 5;
 pub const OFC_STATUS_COLD_START_NEEDED: i32 = 6;
 /// The paint cannot be told from the shape: it is as rough, or of several hues.
 pub const OFC_STATUS_PAINT_UNKNOWN: i32 = 7;
+/// The picture shows no relief on a plane; the result says why.
+pub const OFC_STATUS_NO_RELIEF: i32 = 8;
 
 /// A pointer that must not be NULL is NULL.
 pub const OFC_STATUS_NULL_POINTER: i32 = -10;
@@ -100,6 +102,7 @@ fn message(status: ofc_status) -> &'static CStr {
         OFC_STATUS_NOT_CONVERGED => c"not converged: the iteration ended before it reached its tolerance",
         OFC_STATUS_COLD_START_NEEDED => c"the model no longer fits: a cold start is needed",
         OFC_STATUS_PAINT_UNKNOWN => c"the paint cannot be told from the shape: it is as rough, or of several hues",
+        OFC_STATUS_NO_RELIEF => c"the picture shows no relief on a plane",
         OFC_STATUS_NULL_POINTER => c"a pointer is NULL",
         OFC_STATUS_MISALIGNED => c"a pointer or stride is not aligned for its type",
         OFC_STATUS_OVERLAP => c"an output overlaps another buffer",

@@ -3,7 +3,7 @@
 use crate::prelude::*;
 use ofc_core::color::ellipsoid::Ellipsoid;
 use ofc_core::color::inliers::{Band, Inliers};
-use ofc_core::color::lmeds::{Fit, Method, Params};
+use ofc_core::color::lmeds::{Fit, Method, Params, Weighting};
 use ofc_core::color::location::Location;
 use ofc_core::color::regression::Estimate;
 use ofc_core::light::tilt::Tilts;
@@ -35,6 +35,16 @@ pub const OFC_FIT_LEAST_SQUARES: i32 = 1;
 
 constants!(Method = { LeastMedian: OFC_FIT_LEAST_MEDIAN, LeastSquares: OFC_FIT_LEAST_SQUARES });
 
+/// How much each pixel counts in the search of the fit: one of OFC_WEIGHTING_*.
+pub type ofc_weighting = i32;
+/// All pixels alike; but where one color is the majority, as in the picture of a mostly flat surface, and leaves C open, a pixel
+/// counts by how rare its color is, if that determines C clearly. Streams take all pixels alike.
+pub const OFC_WEIGHTING_AUTO: i32 = 0;
+/// All pixels alike, as in the paper.
+pub const OFC_WEIGHTING_PIXELS: i32 = 1;
+
+constants!(Weighting = { Auto: OFC_WEIGHTING_AUTO, Pixels: OFC_WEIGHTING_PIXELS });
+
 /// How the regression in color space searches and what it rejects. Set by ofc_lmeds_params_default().
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -61,15 +71,17 @@ pub struct ofc_lmeds_params {
     pub sample_size: u32,
     /// One of OFC_FIT_*. Default OFC_FIT_LEAST_MEDIAN.
     pub method: ofc_fit_method,
+    /// One of OFC_WEIGHTING_*. Default OFC_WEIGHTING_AUTO.
+    pub weighting: ofc_weighting,
     /// Must be zero.
-    pub reserved: [u32; 4],
+    pub reserved: [u32; 3],
 }
 
 to_c!(Params => ofc_lmeds_params {
-    confidence, rejection, limits_confidence, seed, min_subsets, subsets, sample_size, method; outlier_ratio: outlier_share
+    confidence, rejection, limits_confidence, seed, min_subsets, subsets, sample_size, method, weighting; outlier_ratio: outlier_share
 } zero { saturation, reserved });
 from_c!(Params <= ofc_lmeds_params {
-    confidence, rejection, limits_confidence, seed, min_subsets, subsets, sample_size, method; outlier_ratio: outlier_share
+    confidence, rejection, limits_confidence, seed, min_subsets, subsets, sample_size, method, weighting; outlier_ratio: outlier_share
 } without { saturation } zero { reserved });
 
 /// The regression's parameters and the saturation level, if one is set.
@@ -248,12 +260,17 @@ pub struct ofc_color_fit {
     pub inlier_count: i32,
     /// How many subsets were drawn.
     pub subsets: u32,
+    /// 1 where pixels counted by how rare their colors are, see OFC_WEIGHTING_AUTO: all but the count of inliers is then of a sample
+    /// that is so weighted. 0 otherwise.
+    pub by_colors: i32,
+    /// Zero.
+    pub reserved: u32,
 }
 
 to_c!(Fit => ofc_color_fit {
     robust, median_residual, dispersion, r_squared, coefficients, covariance, residual_deviation, color_deviations,
-    noise_deviation, pixel_noise, degenerate_noise_deviation, subsets; inlier_count: inliers
-} without { band, usable });
+    noise_deviation, pixel_noise, degenerate_noise_deviation, subsets, by_colors; inlier_count: inliers
+} without { band, usable } zero { reserved });
 
 /// Where most of a set of numbers lies: the one-dimensional least median of squares.
 #[repr(C)]

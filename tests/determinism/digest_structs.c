@@ -41,6 +41,7 @@ void mix_color_fit(const ofc_color_fit *fit)
     NUMBER(fit->degenerate_noise_deviation);
     INTEGER(fit->inlier_count);
     INTEGER(fit->subsets);
+    INTEGER(fit->by_colors);
 }
 
 void mix_covariance(const ofc_covariance *covariance)
@@ -262,6 +263,7 @@ void mix_lmeds_params(const ofc_lmeds_params *params)
     INTEGER(params->subsets);
     INTEGER(params->sample_size);
     INTEGER(params->method);
+    INTEGER(params->weighting);
     INTEGERS(params->reserved);
 }
 

@@ -31,7 +31,7 @@ double random_number(void)
     return ((double)(random_bits() >> 12) - (double)(UINT64_C(1) << 51)) / (double)(UINT64_C(1) << 51);
 }
 
-static uint32_t root(uint32_t square)
+uint32_t integer_root(uint32_t square)
 {
     uint32_t result = 0;
     for (uint32_t bit = 1u << 15; bit > 0; bit >>= 1)
@@ -55,7 +55,7 @@ ofc_depth_map surface(void)
             const int rest = 23 * 23 - u * u - v * v;
             mask[y][x] = rest > 0 ? 255 : 0;
             /* Half of a ball's height in 1/256 of a pixel, and a saddle. */
-            const int height = rest > 0 ? (int)root((uint32_t)rest << 14) : 0;
+            const int height = rest > 0 ? (int)integer_root((uint32_t)rest << 14) : 0;
             depth[y][x] = (float)(height + (u * u - v * v) / 16) / 256;
         }
     return map;

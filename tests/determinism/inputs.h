@@ -8,6 +8,8 @@
 /* A reproducible sequence of random numbers (SplitMix64). */
 void random_seed(uint64_t seed);
 uint64_t random_bits(void);
+/* The largest integer whose square is not larger. */
+uint32_t integer_root(uint32_t square);
 /* In [-1, 1]. */
 double random_number(void);
 

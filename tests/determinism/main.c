@@ -57,6 +57,8 @@ int main(void)
             print(scenes[i].name, "paint");
         }
     }
+    mix_relief();
+    print("bump", "relief");
     board_print("done\n");
     return 0;
 }

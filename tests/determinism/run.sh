@@ -17,7 +17,7 @@ here=tests/determinism
 out=target/determinism
 expected=$here/digests.txt
 mkdir -p "$out"
-portable=("$here"/{main,digest,digest_structs,inputs,stages_pure,stages_render,stages_fit,stages_paint,stages_solve,stages_depth,stages_stream}.c)
+portable=("$here"/{main,digest,digest_structs,inputs,stages_pure,stages_render,stages_fit,stages_paint,stages_solve,stages_depth,stages_stream,stages_relief}.c)
 memory=c_examples/firmware/board/memory.c
 options=(-O2 -std=c99 -Wall -Wextra -Wpedantic -Werror -ffreestanding -fno-stack-protector -ffp-contract=off
     -fno-tree-loop-distribute-patterns -Iinclude -Ic_examples/firmware/board -nostdlib -static "-Wl,--gc-sections" "-Wl,-z,noexecstack")

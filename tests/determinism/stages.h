@@ -30,6 +30,9 @@ void mix_flat_field(const ofc_image *image);
 void mix_paint(const ofc_image *image);
 void mix_segments(const ofc_image *image, const struct fitted *fitted);
 
+/* Of pictures of its own. */
+void mix_relief(void);
+
 /* What the stages share: room for the largest workspace, and outputs a pixel. */
 extern uint64_t workspace[];
 extern const size_t workspace_bytes;

@@ -7,6 +7,7 @@ use ofc_core::color::rank::patches::Refused;
 use ofc_core::color::segment::SegmentError;
 use ofc_core::math::arena::Need;
 use ofc_core::orientation::orthogonal::OrthogonalError;
+use ofc_core::orientation::relief::ReliefError;
 use ofc_core::picture::ImageError;
 use ofc_core::picture::flat_field::FlatFieldError;
 use ofc_core::render::{DepthMapError, LightsError, RenderError};
@@ -19,7 +20,7 @@ use std::path::Path;
 #[test]
 fn every_error_says_what_is_wrong() {
     let color_deviations = [0.0; 3];
-    let errors: [Box<dyn Error>; 53] = [
+    let errors: [Box<dyn Error>; 63] = [
         Box::new(CheckError::Orientation),
         Box::new(CheckError::WorkspaceTooShort),
         Box::new(CheckError::NoInliers),
@@ -43,6 +44,16 @@ fn every_error_says_what_is_wrong() {
         Box::new(ImageError::TooLarge),
         Box::new(ImageError::StrideTooSmall),
         Box::new(ImageError::TooShort),
+        Box::new(ReliefError::Params),
+        Box::new(ReliefError::Size),
+        Box::new(ReliefError::TooSmall),
+        Box::new(ReliefError::Workspace(Need::of_singles(1))),
+        Box::new(ReliefError::TooFewPixels),
+        Box::new(ReliefError::NothingTouched),
+        Box::new(ReliefError::NoMajority),
+        Box::new(ReliefError::NotDetermined),
+        Box::new(ReliefError::NotIntegrable),
+        Box::new(ReliefError::HasEdge),
         Box::new(FlatFieldError::Size),
         Box::new(FlatFieldError::Output),
         Box::new(FlatFieldError::Background),

@@ -2,12 +2,14 @@
 //!
 //! Seeded random subsets of six pixels propose ellipsoids; each is evaluated by the median residual over a stratified
 //! sample of the picture; concentration steps polish the best; the objective that counts is then the exact median over
-//! all usable pixels. Pixels with a residual within 2.5 dispersions are inliers and are fitted by least squares.
+//! all usable pixels. Where one color is the majority, pixels may be weighted by how rare their colors are, see [`Weighting`].
+//! Pixels with a residual within 2.5 dispersions are inliers and are fitted by least squares.
 //!
 //! # Reference
 //! Sections 2.1-2.2, eqs. 10-12. P. J. Rousseeuw, A. M. Leroy, "Robust Regression and Outlier Detection", Wiley 1987.
 //! P. J. Rousseeuw, K. Van Driessen, "Computing LTS regression for large data sets", 2006 (concentration steps).
 
+mod by_colors;
 mod evaluate;
 mod noise;
 mod params;
@@ -16,7 +18,7 @@ mod result;
 mod reweighted;
 mod search;
 
-pub use params::{MAX_SUBSETS, MIN_PIXELS, Method, Params, subset_count};
+pub use params::{MAX_SUBSETS, MIN_PIXELS, Method, Params, Weighting, subset_count};
 pub use result::{Fit, FitError};
 
 pub(crate) use problem::Problem;
@@ -62,6 +64,13 @@ pub fn fit(image: &Image, usable: Usable, params: &Params, workspace: &mut [f32]
         Method::LeastSquares => problem.least_squares(),
     };
     let mut fit = None;
-    problem.evaluate::<true>(scaled, workspace, &mut fit)?;
-    fit.ok_or(FitError::TooFewPixels)
+    let by_pixels =
+        problem.evaluate::<true>(scaled, workspace, &mut fit).and(fit.ok_or(FitError::TooFewPixels));
+    if params.method == Method::LeastMedian
+        && params.weighting == Weighting::Auto
+        && let Some(by_colors) = problem.fit_by_colors(by_pixels.as_ref().ok(), subsets, workspace)
+    {
+        return Ok(by_colors);
+    }
+    by_pixels
 }

@@ -1,4 +1,4 @@
-//! 6x6 matrices by columns: products, Cholesky's factors and the inverse they give, and Householder's QR.
+//! 6x6 matrices by columns: products, and Householder's QR; [`super::cholesky`] has Cholesky's factors.
 //!
 //! nalgebra's decompositions work on views whose sizes it compares at run time, and with some optimizations the panic for
 //! sizes that do not fit stays in the linked binary: its QR where code is made small, its LU always. Its Cholesky
@@ -8,19 +8,14 @@
 //! # Reference
 //! G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., sections 3.1, 4.2, 5.1 and 5.2.
 
-use core::cmp::Ordering;
+pub use super::cholesky::{backward, dot, factor, forward, inverse};
+
 use libm::{fabs, sqrt};
 
 const N: usize = 6;
 
 /// Six columns.
 pub type Mat6 = [[f64; N]; N];
-
-/// The dot product, of as many entries as both have.
-#[must_use]
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
-}
 
 /// `a v`.
 #[must_use]
@@ -116,64 +111,6 @@ fn reflection_axis(column: &mut [f64]) -> Option<f64> {
         *entry /= length;
     }
     Some(-signed)
-}
-
-/// Makes L of L Lᵀ: its columns, zero above the diagonal; `None` when the matrix is not positive definite.
-pub fn factor(matrix: &mut Mat6) -> Option<()> {
-    for j in 0..N {
-        let (done, rest) = matrix.split_at_mut_checked(j)?;
-        let column = rest.first_mut()?;
-        for before in done {
-            let share = *before.get(j)?;
-            for (entry, known) in column.iter_mut().zip(before).skip(j) {
-                *entry -= share * *known;
-            }
-        }
-        let pivot = sqrt(Some(*column.get(j)?).filter(|&square| square > 0.0)?);
-        for (i, entry) in column.iter_mut().enumerate() {
-            *entry = match i.cmp(&j) {
-                Ordering::Less => 0.0,
-                Ordering::Equal => pivot,
-                Ordering::Greater => *entry / pivot,
-            };
-        }
-    }
-    Some(())
-}
-
-/// (L Lᵀ)⁻¹ for the columns of L.
-#[must_use]
-pub fn inverse(factor: &Mat6) -> Mat6 {
-    let mut columns = [[0.0; N]; N];
-    for (i, column) in columns.iter_mut().enumerate() {
-        if let Some(entry) = column.get_mut(i) {
-            *entry = 1.0;
-        }
-        forward(factor, column);
-        backward(factor, column);
-    }
-    columns
-}
-
-/// Solves L x = b in place.
-pub fn forward(factor: &Mat6, b: &mut [f64; N]) {
-    for (i, column) in factor.iter().enumerate() {
-        let (Some(&pivot), Some(x)) = (column.get(i), b.get_mut(i)) else { return };
-        *x /= pivot;
-        let x = *x;
-        for (entry, known) in b.iter_mut().zip(column).skip(i + 1) {
-            *entry -= x * known;
-        }
-    }
-}
-
-/// Solves Lᵀ x = b in place.
-pub fn backward(factor: &Mat6, b: &mut [f64; N]) {
-    for (i, column) in factor.iter().enumerate().rev() {
-        let known = dot(column.get(i + 1..).unwrap_or_default(), b.get(i + 1..).unwrap_or_default());
-        let (Some(&pivot), Some(x)) = (column.get(i), b.get_mut(i)) else { return };
-        *x = (*x - known) / pivot;
-    }
 }
 
 #[cfg(test)]

@@ -98,6 +98,7 @@ impl<P: Pixels> Problem<'_, P> {
                 Method::LeastMedian => self.params.subset_count().unwrap_or(0),
                 Method::LeastSquares => 0,
             },
+            by_colors: false,
         });
     }
 

@@ -22,11 +22,24 @@ pub enum Method {
     LeastSquares,
 }
 
+/// How much each pixel counts in the search.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Weighting {
+    /// All pixels alike; but where one color is the majority and leaves the form open, a pixel counts by how rare its color is,
+    /// if that determines the form clearly. Not in streams.
+    #[default]
+    Auto,
+    /// All pixels alike: the paper's.
+    Pixels,
+}
+
 /// How to search, and what to reject.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
     /// What fits. Default [`Method::LeastMedian`]; the search's parameters mean nothing to the other.
     pub method: Method,
+    /// How much each pixel counts. Default [`Weighting::Auto`].
+    pub weighting: Weighting,
     /// The probability that at least one subset is free of outliers, in (0, 1). Default 0.9999.
     pub confidence: f64,
     /// The share of outliers for which that holds, in [0, 1). Default 0.5.
@@ -49,6 +62,7 @@ impl Default for Params {
     fn default() -> Self {
         Self {
             method: Method::LeastMedian,
+            weighting: Weighting::Auto,
             confidence: 0.9999,
             outlier_share: 0.5,
             min_subsets: 500,

@@ -84,6 +84,9 @@ pub struct Fit {
     pub inliers: usize,
     /// Subsets drawn; none under least squares.
     pub subsets: u32,
+    /// Whether pixels counted by how rare their colors are, see [`Weighting`](super::Weighting); all but `usable` and `inliers` is then
+    /// of a sample so weighted.
+    pub by_colors: bool,
 }
 
 impl Fit {

@@ -82,7 +82,7 @@ impl Job<'_> {
             grid.row_mut(fine.direction, y).fill(0.0);
         }
         let (buffers, above) = buffers.split_at_mut_checked(4 * (grid.width + 2))?;
-        let mut above = above.chunks_exact_mut(grid.width + 2);
+        let mut above = above.chunks_exact_mut((grid.width + 2).max(1));
         let mut above = [(); 3].map(|()| above.next().unwrap_or_default());
         let stiffness = (1.0 / MISFIT) as f32;
         let operator = Finest { slopes: Fine { grid, words: fine.words, packing: Slopes }, anchor };

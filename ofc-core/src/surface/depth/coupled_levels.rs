@@ -219,7 +219,10 @@ impl Levels<'_, '_> {
             for level in 1..levels {
                 let more = self.start(level);
                 let (grid, arrays, _) = self.hierarchy.level(level)?;
-                self.more.get_mut(more..more + grid.len())?.copy_from_slice(arrays.mass);
+                let anchors = self.more.get_mut(more..more + grid.len())?;
+                for (anchor, mass) in anchors.iter_mut().zip(&*arrays.mass) {
+                    *anchor = *mass;
+                }
             }
         }
         coarsen::build(grid, words, Slopes, self.hierarchy)?;

@@ -1,0 +1,34 @@
+// Pictures most of which is one flat surface: the relief on it.
+#pragma once
+
+#include "photo/report.hpp"
+
+struct ReliefResult {
+    ofc_status status = OFC_STATUS_OK;
+    ofc_relief relief = {};  // all but its reason zero where there is none
+    cv::Mat classes;         // CV_8U, OFC_RELIEF_*
+    cv::Mat normals;         // CV_32FC3 x, y, z; zero where there is none
+    cv::Mat uncertainty;     // CV_32F, 1-sigma angle in degrees, NaN where there is no normal
+    DepthOptions depth;
+    Surface surface;         // over the whole frame, zero on the plane
+    std::optional<double> median_error_deg; // over the contact, where the truth is known
+
+    // Leaves out what is not in the mask.
+    void restrict_to(const cv::Mat &mask);
+    bool solved() const { return status == OFC_STATUS_OK; }
+};
+
+// Solves the picture as a relief on a plane. The background, a picture of the plane alone, may be null.
+ReliefResult solve_relief(const Picture &picture, const Picture *background, const ofc_relief_params &params,
+                          const DepthOptions &depth, const cv::Mat &truth);
+
+// Why there is none, in words.
+const char *no_relief(const ReliefResult &result);
+
+// How far to trust it, in words.
+std::string trust(const ReliefResult &result);
+
+// Writes all files of a relief into a folder. `ellipsoid` is what the first model says of the picture; null where it was not asked.
+void write_relief(const std::string &folder, const Picture &picture, const ReliefResult &result, const Result *ellipsoid);
+
+std::vector<Line> summary(const ReliefResult &result);

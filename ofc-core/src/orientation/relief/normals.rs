@@ -1,0 +1,85 @@
+//! The normals of a relief on a plane, pixel by pixel.
+
+use super::estimate::relative;
+use super::grid::Grid;
+use super::result::{PixelClass, Relief, ReliefError};
+use super::scale::unit;
+use crate::math::mat3;
+use crate::picture::{Image, Usable, WINDOW, Window};
+use libm::sqrt;
+
+/// Writes the unit normal of every pixel, and its 1-sigma angular uncertainty in radians, as `write(x, y, normal, uncertainty)` says;
+/// both are NaN where the pixel is masked out or of the class [`PixelClass::None`], or has no usable color and is not on the plane.
+///
+/// The uncertainty holds the noise of the pixel, that of the scale, and the disagreement between both models of the colors.
+///
+/// # Errors
+/// [`ReliefError::Size`] where background or classes are not of the picture's size, or a background is missing or superfluous.
+pub fn normals(
+    image: &Image,
+    background: Option<&Image>,
+    found: &Relief,
+    classes: &[u8],
+    saturation: Option<f32>,
+    mut write: impl FnMut(usize, usize, [f32; 3], f32),
+) -> Result<(), ReliefError> {
+    let (width, height) = (image.width(), image.height());
+    let fits = background.is_none_or(|b| [b.width(), b.height()] == [width, height])
+        && background.is_some() == found.has_background
+        && classes.len() == width * height
+        && Grid::of(width, height) == Some(found.grid);
+    if !fits {
+        return Err(ReliefError::Size);
+    }
+    let usable = Usable::below(saturation.unwrap_or(image.sample().saturation()));
+    // The noise of a pixel from that of a cell, an average of as many as it has.
+    let pixel = found.noise.map(|deviation| deviation * found.grid.side as f64);
+    let noise = found
+        .w
+        .iter()
+        .flatten()
+        .zip(pixel.iter().cycle())
+        .map(|(w, deviation)| w * w * deviation * deviation)
+        .sum::<f64>()
+        / 2.0;
+    let (mut window, mut other) = (Window::new(), Window::new());
+    for y in 0..height {
+        let down = place(y, found.grid.height * found.grid.side);
+        for x in (0..width).step_by(WINDOW) {
+            image.read(x, y, &mut window);
+            let bits = usable.exposed(&window);
+            if let Some(background) = background {
+                background.read(x, y, &mut other);
+            }
+            for i in 0..window.len {
+                let class = classes.get(y * width + x + i).copied().unwrap_or(0);
+                let is_usable = bits >> i & 1 == 1 && class != PixelClass::None as u8;
+                let (normal, deviation) = if class == PixelClass::Plane as u8 && window.masked >> i & 1 == 1 {
+                    ([0.0, 0.0, 1.0], 0.0)
+                } else if !is_usable {
+                    ([f64::NAN; 3], f64::NAN)
+                } else {
+                    let plane = match background {
+                        Some(_) => other.pixel(i).map(f64::from),
+                        None => found.plane.at([place(x + i, found.grid.width * found.grid.side), down]),
+                    };
+                    let mut delta = [0.0; 3];
+                    for ((delta, color), plane) in delta.iter_mut().zip(window.pixel(i)).zip(plane) {
+                        *delta = relative(f64::from(color), plane);
+                    }
+                    let (normal, _) = unit(found.w.map(|row| mat3::dot(row, delta)));
+                    let [n1, n2, n3] = normal;
+                    let model = found.model_deviation(sqrt(n1 * n1 + n2 * n2));
+                    (normal, sqrt(model * model + noise / (n3 * n3)))
+                };
+                write(x + i, y, normal.map(|n| n as f32), deviation as f32);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The middle of a pixel in [-1, 1] along so many pixels.
+fn place(i: usize, count: usize) -> f64 {
+    (2 * i + 1) as f64 / count as f64 - 1.0
+}

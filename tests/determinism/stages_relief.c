@@ -1,0 +1,71 @@
+/* A relief on a plane: a bump, with the background and without it. */
+#include "digest.h"
+#include "inputs.h"
+#include "stages.h"
+
+enum { ACROSS = 72, DOWN = 56, ALL = ACROSS * DOWN };
+
+static uint8_t frame[DOWN][ACROSS][3], plane[DOWN][ACROSS][3], classes[DOWN][ACROSS];
+static float found[DOWN][ACROSS][3], uncertainty[DOWN][ACROSS];
+static uint64_t room[36 * ALL / sizeof(uint64_t)];
+
+/* A bump of (28^2 - r^2)^2 within the radius 28, in integers. */
+static void render(void)
+{
+    static const int lights[3][3] = {{110, 20, 140}, {-80, 100, 130}, {-40, -110, 120}};
+    for (int y = 0; y < DOWN; y++)
+        for (int x = 0; x < ACROSS; x++) {
+            const int u = x - 34, v = 27 - y, rest = 18 * 18 - u * u - v * v;
+            const int p = rest > 0 ? -u * rest / 14 : 0, q = rest > 0 ? -v * rest / 14 : 0;
+            const int length = (int)integer_root((uint32_t)(256 * 256 + p * p + q * q));
+            for (int c = 0; c < 3; c++) {
+                const int lit = (256 * lights[c][2] - p * lights[c][0] - q * lights[c][1]) / length;
+                frame[y][x][c] = (uint8_t)((lit > 0 ? lit : 0) + (int)(random_bits() & 1));
+                plane[y][x][c] = (uint8_t)(lights[c][2] + (int)(random_bits() & 1));
+            }
+        }
+}
+
+static void mix_found(const ofc_relief *relief)
+{
+    mix_doubles(relief->slopes, 6);
+    mix_doubles(relief->plane, 45);
+    mix_doubles(relief->noise, 3);
+    mix_doubles(&relief->circulation, 10);
+    const int32_t numbers[] = {relief->scale_source, relief->has_background, relief->reason, relief->width, relief->height};
+    for (int i = 0; i < 5; i++)
+        mix_status(numbers[i]);
+    for (int i = 0; i < 4; i++)
+        mix_status(relief->cells[i]);
+}
+
+void mix_relief(void)
+{
+    render();
+    const ofc_image image = {
+        .pixels = frame, .width = ACROSS, .height = DOWN, .row_stride_bytes = ACROSS * 3, .format = OFC_PIXEL_RGB8};
+    ofc_image below = image;
+    below.pixels = plane;
+    ofc_relief_params params;
+    mix_status(ofc_relief_params_default(&params));
+    for (int given = 0; given < 2; given++) {
+        const ofc_image *const background = given ? &below : NULL;
+        ofc_relief relief;
+        params.ball_radius = given ? 30 : 0;
+        const ofc_status status =
+            ofc_relief_solve(&image, background, &params, room, sizeof room, classes[0], &relief);
+        mix_status(status);
+        mix_found(&relief);
+        if (status != OFC_STATUS_OK)
+            continue;
+        mix_bytes(classes[0], ALL);
+        mix_status(ofc_relief_normals(&image, background, &relief, classes[0], found[0][0], sizeof found[0],
+                                      uncertainty[0], sizeof uncertainty[0]));
+        mix_floats(found[0][0], 3 * ALL);
+        mix_floats(uncertainty[0], ALL);
+    }
+    /* Two planes differ by nothing. */
+    ofc_relief relief;
+    mix_status(ofc_relief_solve(&below, NULL, &params, room, sizeof room, classes[0], &relief));
+    mix_found(&relief);
+}
