@@ -91,11 +91,15 @@ int main(void)
         status = ofc_normals_compute(&image, &solution, &normals[0][0][0], sizeof normals[0]);
     if (status != OFC_STATUS_OK) {
         fprintf(stderr, "ofc: %s\n", ofc_status_message(status));
+        if (status > 0)
+            fprintf(stderr, "%s: %s\n", ofc_reason_message(solution.reason), ofc_reason_advice(solution.reason));
         return 1;
     }
 
-    printf("ofc %s: %d inliers of %d pixels\n", ofc_version_string(), (int)solution.inlier_count,
-           (int)solution.pixel_counts.usable);
+    const ofc_pixel_counts *counts = &solution.pixel_counts;
+    printf("ofc %s: %d inliers of %d usable pixels of %d; %d black, %d saturated, %d shaded\n", ofc_version_string(),
+           (int)solution.inlier_count, (int)counts->usable, SIZE * SIZE, (int)counts->dark, (int)counts->saturated,
+           (int)counts->shadowed);
     printf("channel   tilt (true)        slant (true)      norm (true)\n");
     for (int c = 0; c < 3; c++) {
         const double length = sqrt(dot(f[c], f[c]));

@@ -1,6 +1,7 @@
 // The paper's section 4 on any range map: Table 1, the median errors, and the figures.
 
 #include "common/draw.hpp"
+#include "common/reason.hpp"
 #include "table1/figures.hpp"
 #include "table1/slopes.hpp"
 
@@ -82,8 +83,12 @@ std::vector<Line> summary(const Experiment &e)
     std::vector<Line> lines = {{"shadows", "direct method: " + e.shadows}};
     if (!e.solved()) {
         lines.push_back({"refused", ofc_status_message(e.status)});
+        lines.push_back({"reason", reason_in_words(e.solution)});
+        lines.push_back({"try", ofc_reason_advice(e.solution.reason)});
+        lines.push_back({"pixels", counts_in_words(e.solution)});
         return lines;
     }
+    lines.push_back({"pixels", counts_in_words(e.solution)});
     lines.push_back({"", "joint method: " + e.joint_shadows});
     lines.push_back({"median", "angular error in degrees, over the " + std::to_string(e.solution.inlier_count) +
                                    " inliers of the direct method"});
@@ -109,7 +114,9 @@ int run(const Options &options)
             std::printf("  %-36s %s\n", answer.name.c_str(), text_of(answer).c_str());
     } else {
         std::fprintf(stderr, "ofc_table1: %s\n", ofc_status_message(e.status));
+        std::fprintf(stderr, "reason: %s\ntry: %s\n", reason_in_words(e.solution).c_str(), ofc_reason_advice(e.solution.reason));
     }
+    std::printf("pixels %s\n", counts_in_words(e.solution).c_str());
     Sheet sheet(4);
     for (const Figure &figure : figures(relief, e)) {
         write_image(out / figure.file, figure.image);

@@ -129,9 +129,10 @@ size_t ofc_solve_workspace_size(int32_t width, int32_t height, const ofc_solve_p
 /// @param workspace_bytes  How long the workspace is.
 /// @param inlier_mask  Output: width x height bytes without gaps, 255 for an inlier, else 0; may be NULL.
 /// @param solution  Output: F in `orientation`, and what every stage found.
-/// @return OFC_STATUS_OK; an argument status. OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE,
-///     OFC_STATUS_NO_TILT or OFC_STATUS_NO_CONSISTENT_SLANTS when there is no F; the solution then holds what was found
-///     on the way. OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or OFC_STATUS_SATURATED when there is nothing to fit.
+/// @return OFC_STATUS_OK; an argument status. OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_UNDETERMINED,
+///     OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_NO_TILT or OFC_STATUS_NO_CONSISTENT_SLANTS when there is no F; the
+///     solution then holds what was found on the way, and `reason` why. OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
+///     OFC_STATUS_SATURATED when there is nothing to fit: ofc_pixel_counts_compute() says why.
 ///
 /// Stack: below 24 KiB. Reference: section 3.4.
 ofc_status ofc_solve(const ofc_image *image, const ofc_solve_params *params, void *workspace, size_t workspace_bytes,
@@ -229,12 +230,15 @@ const char *ofc_status_message(ofc_status status);
 #define OFC_STATUS_COLD_START_NEEDED 6 ///< The stream's model no longer fits the frame; the next frame is for colors.
 #define OFC_STATUS_PAINT_UNKNOWN 7     ///< The paint cannot be told from the shape: it is as rough, or of several hues.
 #define OFC_STATUS_NO_RELIEF 8         ///< The picture shows no relief on a plane; the result says why.
-#define OFC_STATUS_NULL_POINTER (-10)  ///< A pointer that must not be NULL is NULL.
-#define OFC_STATUS_MISALIGNED (-11)    ///< A pointer or stride is not aligned for its type, or for a workspace.
-#define OFC_STATUS_OVERLAP (-12)       ///< An output overlaps an input, the workspace or another output.
-#define OFC_STATUS_EMPTY (-20)         ///< A width, a height or a count is too small.
-#define OFC_STATUS_TOO_LARGE (-21)     ///< There are more than 2^31 - 1 pixels, or a size exceeds the address space.
-#define OFC_STATUS_STRIDE_TOO_SMALL (-22)    ///< A row stride is smaller than a row.
+/// Colors and normals span three dimensions, but by hardly more than the noise, or than what does not obey the model: C
+/// is not determined. `reason` of the solution says what it comes from.
+#define OFC_STATUS_UNDETERMINED 9
+#define OFC_STATUS_NULL_POINTER (-10)     ///< A pointer that must not be NULL is NULL.
+#define OFC_STATUS_MISALIGNED (-11)       ///< A pointer or stride is not aligned for its type, or for a workspace.
+#define OFC_STATUS_OVERLAP (-12)          ///< An output overlaps an input, the workspace or another output.
+#define OFC_STATUS_EMPTY (-20)            ///< A width, a height or a count is too small.
+#define OFC_STATUS_TOO_LARGE (-21)        ///< There are more than 2^31 - 1 pixels, or a size exceeds the address space.
+#define OFC_STATUS_STRIDE_TOO_SMALL (-22) ///< A row stride is smaller than a row.
 #define OFC_STATUS_WORKSPACE_TOO_SMALL (-23) ///< The workspace is smaller than its size function says.
 #define OFC_STATUS_UNKNOWN_FORMAT (-30)      ///< A pixel format is none of OFC_PIXEL_*, or not one that the call takes.
 #define OFC_STATUS_INVALID_PARAMETER (-31)   ///< A parameter is out of its range, or an input number is not finite.
@@ -251,6 +255,67 @@ const char *ofc_status_message(ofc_status status);
 #define OFC_STATUS_TOO_MANY_ROWS (-53)  ///< The frame has all its rows already.
 #define OFC_STATUS_TOO_FEW_ROWS (-54)   ///< The frame ended before its last row; its pass must be repeated.
 #define OFC_STATUS_ROW_MISMATCH (-55)   ///< The picture is not one row of the stream's width and sample type.
+
+/// What a refusal or a doubt comes from: one of OFC_REASON_*, whose numbers are never reused.
+///
+/// A status says how far ofc_solve() came, a reason why it came no farther, or why its answer is to be doubted.
+/// ofc_reason_message() says it in words, ofc_reason_advice() what to try; `reason_value` and `reason_limit` of the
+/// solution are the numbers behind it, as said for each.
+typedef int32_t ofc_reason;
+
+#define OFC_REASON_NONE 0    ///< There is nothing to doubt. Streams do not look for reasons, and have this one always.
+#define OFC_REASON_UNKNOWN 1 ///< No cause was found for the refusal.
+#define OFC_REASON_MASK_EMPTY 10 ///< The mask leaves no pixels, or too few: that many, and how many a fit needs.
+/// The mask leaves the background and leaves out what looks like the object: it is inverted. The ratio of the first and
+/// the last column that it leaves, above its limit.
+#define OFC_REASON_MASK_INVERTED 11
+/// There are too few pixels: for a fit, that many, and how many it needs; or, with OFC_STATUS_OK, to say how sure the
+/// orientation is: the number of inliers, and 0.
+#define OFC_REASON_TOO_FEW_PIXELS 12
+#define OFC_REASON_NOT_FINITE 13 ///< Most pixels are NaN or infinite: their ratio, above its limit.
+#define OFC_REASON_SATURATED 20  ///< Most of what is not black is saturated: its ratio, above its limit.
+/// The picture is black: the ratio of black pixels, above its limit; or it has little light in the lowest part of the
+/// camera's range: brightness over noise, below its limit.
+#define OFC_REASON_DARK 21
+/// The channel `reason_channel` is the same everywhere: its standard deviation over the noise, below its limit.
+#define OFC_REASON_CHANNEL_DEAD 22
+/// The channels are equal or proportional, as in a gray picture or under lights of one color: the second deviation of
+/// the colors over the noise, below its limit.
+#define OFC_REASON_GRAY 23
+/// The colors span two dimensions although the surface bends in both directions: there are two lights, or all of them
+/// lie in a plane. The third deviation of the colors over the noise, below its limit.
+#define OFC_REASON_TOO_FEW_LIGHTS 30
+/// The lights, or their colors, lie nearly in a plane, and `reason_channel` is the one whose light is to be moved out
+/// of it. By how much the noise of a pixel turns its normal in radians, above its limit; or, without F, the third
+/// deviation of the colors over the second, below its limit.
+#define OFC_REASON_LIGHTS_COPLANAR 31
+/// The surface is a plane whose brightness falls off from the middle of the picture: the ratio of the variance of the
+/// brightness that a quadratic function of the place explains, above its limit.
+#define OFC_REASON_VIGNETTE 32
+/// The surface is a plane: the standard deviation of the channel that varies most over the noise, below its limit.
+#define OFC_REASON_FLAT 40
+/// The surface bends in one direction only, or nearly so, as a cylinder or a groove: how much colors change across the
+/// direction of the picture in which they change most, over how much along it, below its limit.
+#define OFC_REASON_CYLINDER 41
+/// The surface looks as much hollow as convex: `confidence.convexity`, below its limit.
+#define OFC_REASON_CONVEX_OR_HOLLOW 42
+/// There are two paints: the ratio of the steps of the colors that are the same everywhere, above its limit.
+#define OFC_REASON_TWO_PAINTS 50
+/// A background of one color was counted as object: the ratio of the pixels that have its color, and 0.
+#define OFC_REASON_BACKGROUND 51
+/// Most pixels do not obey the model: the ratio of outliers; or the residuals over what the noise explains; or the
+/// noise over the brightness, where pixels are as different from their neighbors as from any other. Above its limit.
+#define OFC_REASON_OUTLIERS 52
+
+/// Says what a reason means.
+/// @param reason  Any number.
+/// @return A phrase in static storage; never NULL, not even for numbers that are no reason.
+const char *ofc_reason_message(ofc_reason reason);
+
+/// Says what to try about a reason.
+/// @param reason  Any number.
+/// @return A phrase in static storage; never NULL, not even for numbers that are no reason.
+const char *ofc_reason_advice(ofc_reason reason);
 
 /* =====================================================================================================================
  * Part 2: parameters and results
@@ -568,6 +633,11 @@ struct ofc_solution {
     /// direct method, as in the paper. With the joint method such a light is rare in a picture and common in a wrong
     /// answer.
     uint32_t lights_from_behind;
+    /// What a refusal or a doubt comes from, one of OFC_REASON_*; OFC_REASON_NONE where there is nothing to doubt.
+    ofc_reason reason;
+    int32_t reason_channel;        ///< The channel that `reason` is about, 0 to 2; -1 for none.
+    double reason_value;           ///< What was measured, as the documentation of `reason` says.
+    double reason_limit;           ///< What it was compared with.
     ofc_pixel_counts pixel_counts; ///< What became of the pixels before the fit.
     ofc_color_fit fit;             ///< The regression: C with its errors, its dispersion, and the first rejection.
     ofc_rank rank; ///< Effective ranks of the inliers' colors and normals; F is determined where both are 3.
@@ -582,6 +652,18 @@ struct ofc_solution {
     ofc_slants candidates[OFC_MAX_CANDIDATES];
     ofc_orientation orientation; ///< F and its inverse.
 };
+
+/// Counts the pixels of a picture, and says why where they are too few for a fit: for a picture that ofc_solve() refused
+/// with OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or OFC_STATUS_SATURATED, without a solution.
+/// @param image  The picture.
+/// @param params  The parameters that ofc_solve() was given.
+/// @param workspace  ofc_solve_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param counts  Output: what becomes of the pixels; none is counted as shadowed.
+/// @param reason  Output: the reason; OFC_REASON_NONE where there are enough pixels.
+/// @return OFC_STATUS_OK; an argument status.
+ofc_status ofc_pixel_counts_compute(const ofc_image *image, const ofc_solve_params *params, void *workspace,
+                                    size_t workspace_bytes, ofc_pixel_counts *counts, ofc_reason *reason);
 
 /* ---- Parameters and result of ofc_depth_integrate() ------------------------------------------------------------- */
 
@@ -1402,7 +1484,8 @@ size_t ofc_stream_size(int32_t width, int32_t height, const ofc_stream_params *p
 /// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of as
 /// many windows as the memory holds. Where the sample holds all pixels, or with the direct method all usable pixels,
 /// the solution is equal to that of ofc_solve() bit by bit, but for the integral of a lone candidate, which is not
-/// computed (infinite). Without the feature `full-streams` fit.covariance is NaN: not known.
+/// computed (infinite), and but for `reason` and what follows from it: streams do not look for reasons. Without the
+/// feature `full-streams` fit.covariance is NaN: not known.
 ///
 /// Frames that refine F follow C and the strength of the lights, and with the direct method also the tilts. With the
 /// joint method a turn of all lights about the scene goes unnoticed; ofc_stream_restart() is needed after it.
@@ -1443,8 +1526,8 @@ ofc_status ofc_stream_row(ofc_stream *stream, int32_t y, const ofc_image *row);
 /// @param stream  The stream.
 /// @param pass  Output: what the next frame is for, one of OFC_PASS_*; may be NULL.
 /// @return OFC_STATUS_OK when the next pass follows from this one. OFC_STATUS_COLD_START_NEEDED when the frame does not
-///     fit the model, as ofc_stream_drift_get() says. OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE,
-///     OFC_STATUS_NO_TILT, OFC_STATUS_NO_CONSISTENT_SLANTS, OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
+///     fit the model, as ofc_stream_drift_get() says. OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_UNDETERMINED,
+///     OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_NO_TILT, OFC_STATUS_NO_CONSISTENT_SLANTS, OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
 ///     OFC_STATUS_SATURATED when a cold start found no F. After each of these but OFC_STATUS_OK the next pass is over
 ///     colors. OFC_STATUS_NO_STREAM, OFC_STATUS_NO_FRAME, OFC_STATUS_TOO_FEW_ROWS; an argument status.
 ///

@@ -168,6 +168,9 @@ says "flatter than 1 degree"
 python3 tests/dome_png.py "$out/flat.png" 0
 expect 1 timeout 60 "$table1" "$out/flat.png" --out "$out/table1_flat"
 says "rank-deficient"
+says "reason: the surface is flat"
+says "try: "
+says "masked out"
 [ -s "$out/table1_flat/overview.png" ] || fail "a flat range map without an overview"
 expect 2 "$table1" "$out/no-such-file.tiff"
 expect 2 "$table1" "$out/scene/normals.tiff"
@@ -195,6 +198,15 @@ json "$out/paper/report.json" 'near([r["check"]["turn"]["deg"]], 4.01, 0.12)'
 json "$out/scene/report.json" 'r["check"]["turn"]["deg"] < 0.01 < r["check"]["turn"]["expected_deg"]' # 0 by construction
 json "$out/scene/report.json" 'r["confidence"]["expected_error_deg"] < 0.99 and "trust" in r["confidence"]["in_words"]' # 0.96
 json "$out/scene/report.json" 'r["pixels"]["shaded"] == 32080 and r["from_behind"] == [False] * 3'
+# Reasons: of a good picture none; of its gray plane, and of an empty mask.
+json "$out/scene/report.json" 'r["reason"] is None and r["rank"] and r["confidence"]["open_outline"] < 0.5'
+expect 0 "$photo" --save-planes --out "$out/planes_of_scene"
+plane=$out/planes_of_scene/plane_g.png
+expect 1 "$photo" --planes "$plane" "$plane" "$plane" --out "$out/gray_planes"
+says "channels are equal or proportional"
+says "try        "
+says "usable, 0 inliers"
+json "$out/gray_planes/report.json" 'r["reason"]["code"] == 23 and r["rank"]["colors"] == 1 and r["confidence"] is None and r["C"] is None'
 # Numbers that are not known are null. The twin of a surface is as sure as the surface, but for a check against the other.
 json "$out/paper/report.json" 'r["confidence"]["expected_error_deg"] is None and "not known" in r["confidence"]["in_words"]'
 says "not known: the orientation rests on tilts alone"
@@ -262,6 +274,8 @@ if [ -d "$data" ]; then
     json "$out/stereo_squares/report.json" 'r["parameters"]["fit"] == "squares" and near([r["median_error_deg"]], 9.87, 0.3)'
     expect 1 "$photo" "$data/gelsight_groove_rank2/rgb.png" --mask "$data/gelsight_groove_rank2/mask.png" --out "$out/groove"
     says "dimensions"
+    says "bends in one direction only"
+    json "$out/groove/report.json" 'r["reason"]["code"] == 41 and r["rank"]["normals"] == 2 and r["F"] is None'
     [ -s "$out/groove/report.json" ] || fail "a refusal without a report"
     [ ! -e "$out/groove/depth.tiff" ] || fail "a refusal with depth"
 else

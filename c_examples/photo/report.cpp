@@ -1,5 +1,6 @@
 #include "photo/report.hpp"
 
+#include "common/reason.hpp"
 #include "photo/text.hpp"
 #include "photo/trust.hpp"
 
@@ -128,6 +129,19 @@ json confidence(const Result &result)
             {"in_words", trust(result)}};
 }
 
+// What a refusal or a doubt comes from, or null where there is nothing to doubt.
+json reason(const ofc_solution &s)
+{
+    if (s.reason == OFC_REASON_NONE)
+        return nullptr;
+    return {{"code", s.reason},
+            {"in_words", ofc_reason_message(s.reason)},
+            {"advice", ofc_reason_advice(s.reason)},
+            {"channel", s.reason_channel < 0 ? json(nullptr) : json(channel_names[s.reason_channel])},
+            {"value", s.reason_value},
+            {"limit", s.reason_limit}};
+}
+
 // What a stage found, or null where the solve did not come so far.
 json found(bool is_there, json value)
 {
@@ -165,6 +179,7 @@ void write_report(const std::string &path, const Result &result)
     json report = {
         {"status", ofc_status_message(result.status)},
         {"status_code", result.status},
+        {"reason", reason(s)},
         {"version", ofc_version_string()},
         {"parameters", {{"seed", result.params.lmeds.seed},
           {"subsets", s.fit.subsets},
@@ -230,11 +245,14 @@ std::vector<Line> summary(const Result &result)
     std::vector<Line> lines;
     if (!result.solved())
         lines.push_back({"refused", ofc_status_message(result.status)});
+    if (s.reason != OFC_REASON_NONE) {
+        add_wrapped(lines, result.solved() ? "doubt" : "reason", reason_in_words(s));
+        add_wrapped(lines, "try", ofc_reason_advice(s.reason));
+    }
+    lines.push_back({"pixels", counts_in_words(s)});
     if (result.status < 0)
         return lines;
     lines.push_back({"shadows", result.shadows});
-    lines.push_back({"pixels", text("%d usable, %d inliers after residuals, %d after norms", s.pixel_counts.usable,
-                                    s.fit.inlier_count, s.inlier_count)});
     if (s.fit.inlier_count > 0)
         lines.push_back({"ellipsoid", text("robust R² %.4f, dispersion %.4f", s.fit.r_squared, s.fit.dispersion)});
     if (s.orientation.rank == 0)

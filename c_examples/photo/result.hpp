@@ -15,7 +15,7 @@ struct Result {
     ofc_status status = OFC_STATUS_OK;
     ofc_solve_params params = {};
     std::string shadows;            // what was done with them, in words; empty where the status is negative
-    ofc_solution solution = {};     // zero where the status is negative
+    ofc_solution solution = {};     // but for pixel_counts and reason zero where the status is negative
     cv::Mat inliers;                // CV_8U, 255 for an inlier
     cv::Mat normals;                // CV_32FC3 x, y, z; zero where there is none
     cv::Mat uncertainty;            // CV_32F, 1-sigma angle in degrees, NaN where there is no normal; empty where it is not known

@@ -1,5 +1,6 @@
 #include "photo/solve.hpp"
 
+#include "common/reason.hpp"
 #include "common/workspace.hpp"
 #include "photo/trust.hpp"
 
@@ -74,7 +75,9 @@ Result solve(const Picture &picture, const ofc_solve_params &params, const Shado
     result.status = timed(result, "solve", [&] {
         return ofc_solve(&image, &result.params, workspace.data(), workspace.bytes(), result.inliers.data, &result.solution);
     });
-    if (result.status >= 0)
+    if (result.status < 0)
+        explain_refusal(image, result.params, result.solution);
+    else
         result.shadows = shadows.in_words(result.params, result.solution);
     if (!result.solved())
         return result;

@@ -29,7 +29,7 @@ Shape shape(const Result &result)
     if (result.open_outline > 0.5)
         return {false, "convex or hollow cannot be told, as the surface does not end within the picture: taken for convex, "
                        "--hollow takes it for hollow"};
-    if (clear <= 0.15)
+    if (result.solution.reason == OFC_REASON_CONVEX_OR_HOLLOW)
         return {false, "convex or hollow is a guess: --convex or --hollow says which"};
     return {true, clear > 0.5 ? "clearly convex" : "more convex than concave"};
 }

@@ -1,5 +1,6 @@
 #include "table1/experiment.hpp"
 
+#include "common/reason.hpp"
 #include "common/workspace.hpp"
 
 #include <algorithm>
@@ -120,6 +121,8 @@ Experiment run_experiment(const Relief &relief, const ExperimentParams &wanted)
     ofc_solution &s = e.solution;
     e.status = solve(image, params, &e.inliers, s);
     e.shadows = wanted.shadows.in_words(params, s);
+    if (e.status < 0)
+        explain_refusal(image, params, s);
     if (e.status != OFC_STATUS_OK)
         return e;
     Workspace for_check(ofc_check_workspace_size(image.width, image.height));

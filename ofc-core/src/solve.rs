@@ -20,6 +20,7 @@ mod fallback;
 mod oriented;
 mod outcome;
 mod parameters;
+pub mod reason;
 mod shadow_rejection;
 mod solution;
 
@@ -27,6 +28,7 @@ pub use choice::{Candidate, Choice, SlantSource};
 pub use fallback::SlantFallback;
 pub use outcome::Outcome;
 pub use parameters::{Convexity, NormSource, OrientationMethod, Params, ShadowRejection};
+pub use reason::{Finding, Reason};
 pub use solution::Solution;
 
 pub(crate) use color_model::SMALLEST_NOISE_MARGIN;
@@ -83,6 +85,9 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
         }
         Err(reason) => solution.end_without_model(reason),
     }
+    // What a refusal or a doubt comes from.
+    let finding = reason::find(image, params, &solution, workspace);
+    solution.take_finding(finding);
     Ok(solution)
 }
 

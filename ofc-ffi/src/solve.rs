@@ -1,10 +1,11 @@
 //! The whole pipeline.
 
 use crate::prelude::*;
+use crate::reason::ofc_reason;
 use ofc_core::light::tilt::TiltEstimator;
 use ofc_core::orientation::joint::{Evidence, Joint};
 use ofc_core::solve::{
-    self, Candidate, Choice, Convexity, NormSource, OrientationMethod, Params, ShadowRejection,
+    self, Candidate, Choice, Convexity, Finding, NormSource, OrientationMethod, Params, ShadowRejection,
     SlantFallback, SlantSource, Solution,
 };
 
@@ -166,6 +167,14 @@ pub struct ofc_solution {
     /// direct method, as in the paper. With the joint method such a light is rare in a picture and common in a wrong
     /// answer.
     pub lights_from_behind: u32,
+    /// What a refusal or a doubt comes from, one of OFC_REASON_*; OFC_REASON_NONE where there is nothing to doubt.
+    pub reason: ofc_reason,
+    /// The channel that `reason` is about, 0 to 2; -1 for none.
+    pub reason_channel: i32,
+    /// What was measured, as the documentation of `reason` says.
+    pub reason_value: f64,
+    /// What it was compared with.
+    pub reason_limit: f64,
     /// What became of the pixels before the fit.
     pub pixel_counts: ofc_pixel_counts,
     /// The regression: C with its errors, its dispersion, and the first rejection.
@@ -319,9 +328,13 @@ impl ofc_solution {
             tilts,
             joint,
             choice,
+            finding: Finding { reason, channel, value, limit },
         } = solution;
         self.outcome = outcome.to_c();
         self.inlier_count = inlier_count.to_c();
+        self.reason = reason.to_c();
+        self.reason_channel = channel.as_ref().map_or(-1, ToC::to_c);
+        (self.reason_value, self.reason_limit) = (*value, *limit);
         self.pixel_counts = pixel_counts.to_c();
         self.fit = fit.to_c();
         self.fit.color_deviations = fit.as_ref().map_or(*color_deviations, |fit| fit.color_deviations);
@@ -395,9 +408,10 @@ pub unsafe extern "C" fn ofc_solve_workspace_size(
 /// @param workspace_bytes  How long the workspace is.
 /// @param inlier_mask  Output: width x height bytes without gaps, 255 for an inlier, else 0; may be NULL.
 /// @param solution  Output: F in `orientation`, and what every stage found.
-/// @return OFC_STATUS_OK; an argument status. OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE,
-///     OFC_STATUS_NO_TILT or OFC_STATUS_NO_CONSISTENT_SLANTS when there is no F; the solution then holds what was found
-///     on the way. OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or OFC_STATUS_SATURATED when there is nothing to fit.
+/// @return OFC_STATUS_OK; an argument status. OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_UNDETERMINED,
+///     OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_NO_TILT or OFC_STATUS_NO_CONSISTENT_SLANTS when there is no F; the
+///     solution then holds what was found on the way, and `reason` why. OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
+///     OFC_STATUS_SATURATED when there is nothing to fit: ofc_pixel_counts_compute() says why.
 ///
 /// Stack: below 24 KiB. Reference: section 3.4.
 #[unsafe(no_mangle)]

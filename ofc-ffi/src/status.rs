@@ -42,6 +42,9 @@ pub const OFC_STATUS_COLD_START_NEEDED: i32 = 6;
 pub const OFC_STATUS_PAINT_UNKNOWN: i32 = 7;
 /// The picture shows no relief on a plane; the result says why.
 pub const OFC_STATUS_NO_RELIEF: i32 = 8;
+/// Colors and normals span three dimensions, but by hardly more than the noise, or than what does not obey the model: C
+/// is not determined. `reason` of the solution says what it comes from.
+pub const OFC_STATUS_UNDETERMINED: i32 = 9;
 
 /// A pointer that must not be NULL is NULL.
 pub const OFC_STATUS_NULL_POINTER: i32 = -10;
@@ -103,6 +106,7 @@ fn message(status: ofc_status) -> &'static CStr {
         OFC_STATUS_COLD_START_NEEDED => c"the model no longer fits: a cold start is needed",
         OFC_STATUS_PAINT_UNKNOWN => c"the paint cannot be told from the shape: it is as rough, or of several hues",
         OFC_STATUS_NO_RELIEF => c"the picture shows no relief on a plane",
+        OFC_STATUS_UNDETERMINED => c"C is not determined: what would determine it is hardly more than the noise, or than what does not obey the model",
         OFC_STATUS_NULL_POINTER => c"a pointer is NULL",
         OFC_STATUS_MISALIGNED => c"a pointer or stride is not aligned for its type",
         OFC_STATUS_OVERLAP => c"an output overlaps another buffer",
@@ -247,6 +251,7 @@ refusals! {
 constants!(Outcome = {
     Solved: OFC_STATUS_OK,
     RankDeficient: OFC_STATUS_RANK_DEFICIENT,
+    Undetermined: OFC_STATUS_UNDETERMINED,
     NotPositiveDefinite: OFC_STATUS_NOT_POSITIVE_DEFINITE,
     NoTilt: OFC_STATUS_NO_TILT,
     NoConsistentSlants: OFC_STATUS_NO_CONSISTENT_SLANTS,

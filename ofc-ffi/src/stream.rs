@@ -189,7 +189,8 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 /// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of as
 /// many windows as the memory holds. Where the sample holds all pixels, or with the direct method all usable pixels,
 /// the solution is equal to that of ofc_solve() bit by bit, but for the integral of a lone candidate, which is not
-/// computed (infinite). Without the feature `full-streams` fit.covariance is NaN: not known.
+/// computed (infinite), and but for `reason` and what follows from it: streams do not look for reasons. Without the
+/// feature `full-streams` fit.covariance is NaN: not known.
 ///
 /// Frames that refine F follow C and the strength of the lights, and with the direct method also the tilts. With the
 /// joint method a turn of all lights about the scene goes unnoticed; ofc_stream_restart() is needed after it.
@@ -286,8 +287,8 @@ pub unsafe extern "C" fn ofc_stream_row(
 /// @param stream  The stream.
 /// @param pass  Output: what the next frame is for, one of OFC_PASS_*; may be NULL.
 /// @return OFC_STATUS_OK when the next pass follows from this one. OFC_STATUS_COLD_START_NEEDED when the frame does not
-///     fit the model, as ofc_stream_drift_get() says. OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_NOT_POSITIVE_DEFINITE,
-///     OFC_STATUS_NO_TILT, OFC_STATUS_NO_CONSISTENT_SLANTS, OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
+///     fit the model, as ofc_stream_drift_get() says. OFC_STATUS_RANK_DEFICIENT, OFC_STATUS_UNDETERMINED,
+///     OFC_STATUS_NOT_POSITIVE_DEFINITE, OFC_STATUS_NO_TILT, OFC_STATUS_NO_CONSISTENT_SLANTS, OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
 ///     OFC_STATUS_SATURATED when a cold start found no F. After each of these but OFC_STATUS_OK the next pass is over
 ///     colors. OFC_STATUS_NO_STREAM, OFC_STATUS_NO_FRAME, OFC_STATUS_TOO_FEW_ROWS; an argument status.
 ///

@@ -123,7 +123,7 @@ static void bad_parameters(void **state)
     BAD(OFC_STATUS_INVALID_PARAMETER, orientation_method, 2);
     BAD(OFC_STATUS_INVALID_PARAMETER, orientation_method, -1);
     BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[0], 1);
-    BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[3], 1);
+    BAD(OFC_STATUS_RESERVED_NOT_ZERO, lmeds.reserved[2], 1);
 #undef BAD
     for (size_t i = 0; i < n; i++) {
         REFUSED(bad[i].expected, out,
@@ -357,8 +357,8 @@ static void defaults(void **state)
 static void messages_and_version(void **state)
 {
     (void)state;
-    static const ofc_status all[] = {0,   1,   2,   3,   4,   -10, -11, -12, -20, -21, -22,
-                                     -23, -30, -31, -32, -33, -40, -41, -42, -43, -50, -51, -52, -53, -54, -55, 5, 6};
+    static const ofc_status all[] = {0,   1,   2,   3,   4,   7,   -10, -11, -12, -20, -21, -22,
+                                     -23, -30, -31, -32, -33, -40, -41, -42, -43, -50, -51, -52, -53, -54, -55, 5, 6, 8, 9};
     const size_t count = sizeof all / sizeof *all;
     const char *unknown = ofc_status_message(12345);
     assert_string_equal(unknown, ofc_status_message(INT32_MIN));

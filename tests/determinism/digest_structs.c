@@ -137,6 +137,10 @@ void mix_solution(const ofc_solution *solution)
     INTEGER(solution->chosen);
     INTEGER(solution->inlier_count);
     INTEGER(solution->lights_from_behind);
+    INTEGER(solution->reason);
+    INTEGER(solution->reason_channel);
+    NUMBER(solution->reason_value);
+    NUMBER(solution->reason_limit);
     mix_pixel_counts(&solution->pixel_counts);
     mix_color_fit(&solution->fit);
     mix_rank(&solution->rank);

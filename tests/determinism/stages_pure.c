@@ -10,6 +10,10 @@ void digest_constants(void)
     mix_text(ofc_version_string());
     for (ofc_status status = -60; status < 20; status++)
         mix_text(ofc_status_message(status));
+    for (ofc_reason reason = -5; reason < 70; reason++) {
+        mix_text(ofc_reason_message(reason));
+        mix_text(ofc_reason_advice(reason));
+    }
     digest_print("version and messages");
 
     ofc_lmeds_params lmeds;

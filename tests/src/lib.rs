@@ -14,6 +14,7 @@ pub mod lit_reliefs;
 pub mod lmeds_oracle;
 pub mod painted_scenes;
 pub mod photographs;
+pub mod reason_scenes;
 pub mod relief_scenes;
 pub mod shaded_scenes;
 pub mod shapes;

@@ -46,6 +46,8 @@ fn header_of_cpp() -> String {
 /// The names of this library in a text, `OFC_STATUS_*` among them.
 fn names(text: &str) -> impl Iterator<Item = &str> {
     let words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_' && c != '*');
+    // A pointer's star is none of its function's name.
+    let words = words.map(|word| word.trim_start_matches('*'));
     words.filter(|word| word.starts_with("ofc_") || word.starts_with("OFC_"))
 }
 
@@ -56,7 +58,7 @@ fn strangers(header: &str) -> Vec<&str> {
     let comments = header.lines().flat_map(|line| names(line.split_at(comment(line)).1));
     let known = |name: &str| match name.strip_suffix('*') {
         Some(start) => code.iter().any(|word| word.starts_with(start)),
-        None => code.contains(name.trim_start_matches('*')),
+        None => code.contains(name),
     };
     comments.filter(|name| !known(name)).collect()
 }

@@ -5,7 +5,7 @@ use crate::math::mat3::Mat3;
 
 /// The sums of rr, gg, bb, rg, rb and gb over colors.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct SecondMoments(Coefficients);
+pub(crate) struct SecondMoments(Coefficients);
 
 impl SecondMoments {
     /// Adds a color.

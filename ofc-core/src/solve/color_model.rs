@@ -16,6 +16,8 @@ pub(crate) const SMALLEST_NOISE_MARGIN: f64 = 1.15;
 pub(crate) enum NoModel {
     /// The colors, or the normals, span less than three dimensions.
     RankDeficient,
+    /// They span three, but by hardly more than the noise.
+    Undetermined,
     /// The colors do not lie on an ellipsoid.
     NotPositiveDefinite,
 }
@@ -26,8 +28,12 @@ pub(crate) enum NoModel {
 /// [`NoModel`], also without a fit.
 pub(super) fn ellipsoid(fit: Option<&Fit>, rank: Option<Rank>, method: Method) -> Result<Ellipsoid, NoModel> {
     let fit = fit.ok_or(NoModel::RankDeficient)?;
-    if !is_determined(fit, method) || rank.is_some_and(|rank| rank.colors < 3) {
+    if rank.is_some_and(|rank| rank.colors < 3) {
         return Err(NoModel::RankDeficient);
+    }
+    if !is_determined(fit, method) {
+        let is_full = rank.is_some_and(|rank| rank.is_full());
+        return Err(if is_full { NoModel::Undetermined } else { NoModel::RankDeficient });
     }
     ellipsoid::decompose(&fit.z()).map_err(|_| NoModel::NotPositiveDefinite)
 }

@@ -4,6 +4,7 @@ use super::choice::Choice;
 use super::color_model::{self, NoModel};
 use super::oriented::{NoOrientation, Oriented};
 use super::outcome::Outcome;
+use super::reason::{Finding, Reason};
 use crate::color::ellipsoid::Ellipsoid;
 use crate::color::inliers::{Band, Inliers};
 use crate::color::lmeds::{Fit, FitError, Method};
@@ -42,6 +43,8 @@ pub struct Solution {
     pub joint: Option<Joint>,
     /// Slants and F.
     pub choice: Option<Choice>,
+    /// What a refusal or a doubt comes from; none in a stream, which does not look for it.
+    pub finding: Finding,
 }
 
 impl Solution {
@@ -74,6 +77,7 @@ impl Solution {
             tilts: None,
             joint: None,
             choice: None,
+            finding: Finding::NONE,
         }
     }
 
@@ -86,6 +90,7 @@ impl Solution {
         self.inlier_count = 0;
         (self.rank, self.fit, self.norm_location) = (None, None, None);
         (self.ellipsoid, self.tilts, self.joint, self.choice) = (None, None, None, None);
+        self.finding = Finding::NONE;
     }
 
     /// Takes the regression over, whose fit is in its place if there is one.
@@ -135,6 +140,7 @@ impl Solution {
     pub(crate) fn end_without_model(&mut self, reason: NoModel) {
         self.outcome = match reason {
             NoModel::RankDeficient => Outcome::RankDeficient,
+            NoModel::Undetermined => Outcome::Undetermined,
             NoModel::NotPositiveDefinite => Outcome::NotPositiveDefinite,
         };
     }
@@ -151,6 +157,30 @@ impl Solution {
             self.inliers.norm = Band::norm(fit.z(), lengths, rejection);
             self.inlier_count = self.inliers.count(pixels);
         }
+    }
+
+    /// Takes the reason of a refusal or a doubt, and makes ranks and outcome agree with it: the picture shows more than its colors do.
+    /// What cannot be an answer is refused: a plane, and what has one hue or a channel without a signal.
+    #[inline(never)]
+    pub(crate) fn take_finding(&mut self, finding: Finding) {
+        self.finding = finding;
+        let is_refused = self.outcome != Outcome::Solved;
+        let (outcome, colors, normals) = match finding.reason {
+            Reason::Flat => (Outcome::RankDeficient, Some(1), Some(Some(1))),
+            Reason::Gray | Reason::Vignette => (Outcome::RankDeficient, Some(1), Some(None)),
+            Reason::ChannelDead => (Outcome::Undetermined, None, None),
+            Reason::TooFewLights if is_refused => (Outcome::RankDeficient, Some(2), Some(Some(3))),
+            Reason::Cylinder if is_refused => (Outcome::RankDeficient, None, Some(Some(2))),
+            _ => return,
+        };
+        if let Some(rank) = &mut self.rank {
+            rank.colors = colors.unwrap_or(rank.colors);
+            rank.normals = normals.unwrap_or(rank.normals);
+            if rank.is_full() || outcome == Outcome::RankDeficient {
+                self.outcome = outcome;
+            }
+        }
+        (self.tilts, self.joint, self.choice) = (None, None, None);
     }
 
     /// Ends with the choice of slants that is in its place.
