@@ -17,7 +17,7 @@ namespace {
 // What a run may write into its folder, but for the planes of --save-planes, which may be the next run's input.
 constexpr const char *const outputs[] = {"report.json",      "inliers.png",     "overview.png", "normals.png",
                                          "normals.tiff",     "uncertainty.png", "depth.tiff",   "depth.png",
-                                         "uncertainty.tiff", "mesh.ply",        "classes.png"};
+                                         "uncertainty.tiff", "mesh.ply",        "classes.png", "albedo.png"};
 
 int run(const Options &options)
 {
@@ -79,18 +79,36 @@ int run(const Options &options)
     if (options.model == "relief")
         return relief(nullptr).solved() ? 0 : 1;
 
-    const auto solve_by = [&](ofc_orientation_method method) {
-        Result result = solve(picture, options.solve_params(method), options.shadows, options.depth);
+    const auto solve_by = [&](const Picture &solved, ofc_orientation_method method) {
+        Result result = solve(solved, options.solve_params(method), options.shadows, options.depth);
         result.true_f = true_f;
         if (result.solved() && !truth.empty())
             result.median_error_deg = median_angle_deg(result.normals, truth);
         return result;
     };
-    Result result = solve_by(options.direct() ? OFC_ORIENTATION_DIRECT : OFC_ORIENTATION_JOINT);
-    if (result.solved())
-        time_stages(picture, result);
-    else if (options.model == "auto" && !options.paper_report() && result.status >= 0 && relief(&result).solved())
+    const ofc_orientation_method method = options.direct() ? OFC_ORIENTATION_DIRECT : OFC_ORIENTATION_JOINT;
+    Result result = solve_by(picture, method);
+    const bool asks_for_paint = options.paint.choice == "uneven";
+    if (!result.solved() && options.model == "auto" && !options.paper_report() && !asks_for_paint && result.status >= 0 &&
+        relief(&result).solved())
         return 0;
+    // The picture that was solved: as it is, or without its paint.
+    Picture solved = picture;
+    if (options.paint.choice != "even") {
+        Paint paint = paint_of(picture, options.seed);
+        const bool is_wanted = asks_for_paint || is_better_even(paint, result.status, result.solution);
+        if (is_wanted && !paint.albedo.empty()) {
+            Result even = solve_by(paint.even, method);
+            paint.taken = even.solved() || asks_for_paint;
+            if (paint.taken) {
+                result = even;
+                solved = paint.even;
+            }
+        }
+        result.paint = paint;
+    }
+    if (result.solved())
+        time_stages(solved, result);
 
     if (options.save_planes) {
         const cv::Mat channels[] = {picture.channel(0), picture.channel(1), picture.channel(2)};
@@ -100,6 +118,8 @@ int run(const Options &options)
     }
     write_report(out / "report.json", result);
     write_image(out / "inliers.png", result.inliers);
+    if (result.paint && result.paint->taken)
+        write_image(out / "albedo.png", result.paint->picture());
     if (result.solved()) {
         write_image(out / "normals.png", normal_map(result.normals));
         write_normals_tiff(out / "normals.tiff", result.normals);
@@ -114,11 +134,11 @@ int run(const Options &options)
     write_image(out / "overview.png", overview(picture, result));
 
     if (options.paper_report() && result.solved()) {
-        const Result direct = options.direct() ? result : solve_by(OFC_ORIENTATION_DIRECT);
+        const Result direct = options.direct() ? result : solve_by(solved, OFC_ORIENTATION_DIRECT);
         if (!direct.solved())
             throw std::runtime_error(std::string("the direct method has no answer: ") + ofc_status_message(direct.status));
-        print_paper_report(picture, direct);
-        write_paper_figures(out, picture, direct);
+        print_paper_report(solved, direct);
+        write_paper_figures(out, solved, direct);
     } else {
         for (const Line &line : summary(result))
             std::fprintf(result.solved() ? stdout : stderr, "%-10s %s\n", line.label.c_str(), line.text.c_str());

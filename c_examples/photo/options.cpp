@@ -72,6 +72,7 @@ Options parse_options(int argc, char **argv)
         ->check(CLI::PositiveNumber)
         ->type_name("PX");
     options.shadows.add_to(line);
+    options.paint.add_to(line);
     options.depth.add_to(line);
     line.add_option("--report", options.report,
                     "What is printed: a summary, or Table 2 and the checks of section 5 for the paper's direct method, whose\n"

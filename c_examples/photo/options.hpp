@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/depth_options.hpp"
+#include "photo/paint.hpp"
 
 #include <cstdint>
 #include <string>
@@ -17,6 +18,7 @@ struct Options {
     std::string model = "auto"; // auto, ellipsoid or relief
     double ball_radius = 0;     // in pixels; 0 where not given
     ShadowOption shadows;
+    PaintOption paint;
     DepthOptions depth;
     bool convex = false, hollow = false; // what the caller knows of the surface
     bool save_planes = false; // the channels as three gray pictures

@@ -221,6 +221,8 @@ void write_report(const std::string &path, const Result &result)
                           {"color_noise", s.rank.color_noise},
                           {"normal_deviations", found(s.rank.normals > 0, s.rank.normal_deviations)},
                           {"normal_noise", found(s.rank.normals > 0, s.rank.normal_noise)}};
+    if (result.paint)
+        report["paint"] = result.paint->report();
     if (result.check)
         report["check"] = check_report(*result.check);
     if (result.solved())
@@ -250,6 +252,8 @@ std::vector<Line> summary(const Result &result)
         add_wrapped(lines, "try", ofc_reason_advice(s.reason));
     }
     lines.push_back({"pixels", counts_in_words(s)});
+    if (result.paint)
+        add_wrapped(lines, "paint", result.paint->in_words());
     if (result.status < 0)
         return lines;
     lines.push_back({"shadows", result.shadows});

@@ -4,6 +4,7 @@
 #include "common/depth_options.hpp"
 #include "common/estimates.hpp"
 #include "common/picture.hpp"
+#include "photo/paint.hpp"
 
 #include <cmath>
 #include <optional>
@@ -23,6 +24,7 @@ struct Result {
     ofc_covariance covariance = {}; // where the uncertainty is known
     DepthOptions depth;             // what was wanted of it
     Surface surface;                // empty where there are no normals
+    std::optional<Paint> paint;     // where it was looked for
     std::optional<ofc_check_result> check; // where there are normals
     std::vector<std::pair<std::string, double>> milliseconds; // by stage, in the order they run
 
