@@ -38,15 +38,16 @@
 ///   again when the call returns; only a stream's memory stays in use until the caller is done with the stream. Nothing is
 ///   written outside of what a call says it writes. What a workspace holds before a call does not matter.
 /// - Errors: every call checks its arguments: whether they are null, misaligned, too short, overlapping, empty, too large,
-///   or not finite. On a negative status no output has been touched. That memory is as long as said cannot be checked.
+///   or not finite. On a negative status no output has been touched. That memory is as long as said cannot be checked:
+///   a stream is told from the first 32 bytes at its address, which must be there; anything else in them is no stream.
 /// - Threads: there is no global state. Calls on different outputs and workspaces may run at the same time.
 /// - Same bits: one version makes the same output bits of the same input and seed, on every target with IEEE 754
 ///   arithmetic.
-/// - NaN: pixels that are NaN or infinite are left out and counted. Parameters that are not finite are refused. The only
-///   NaNs in outputs say "not known" or "no value here": in ofc_confidence, ofc_check_result, ofc_stream_drift, a
-///   covariance, ofc_paint, ofc_slant_curve_sample(), ofc_depth_integrate(), ofc_flat_field(), ofc_relief_normals(),
-///   ofc_relief, ofc_paint_albedo() and ofc_paint_divide(). Their bits are 0x7ff8000000000000 and 0x7fc00000 on every
-///   target.
+/// - NaN: pixels that are NaN or infinite are left out and counted. Parameters that are not finite are refused. With
+///   OFC_STATUS_OK an output is finite, but for infinities that its documentation names. The only NaNs in outputs say
+///   "not known" or "no value here": in ofc_confidence, ofc_check_result, ofc_stream_drift, a covariance, ofc_paint,
+///   ofc_slant_curve_sample(), ofc_depth_integrate(), ofc_flat_field(), ofc_relief_normals(), ofc_relief,
+///   ofc_paint_albedo() and ofc_paint_divide(). Their bits are 0x7ff8000000000000 and 0x7fc00000 on every target.
 /// - Equations and sections are numbered as in M. S. Drew, "Direct Solution of Orientation-from-Color Problem using a
 ///   Modification of Pentland's Light Source Direction Estimator". The direct method is the method of that paper.
 
@@ -145,7 +146,8 @@ ofc_status ofc_solve(const ofc_image *image, const ofc_solve_params *params, voi
 /// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
 /// @param normals  Output: height rows of width (x right, y up, z toward the camera) floats; zero for no normal.
 /// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; an argument status.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_INVALID_PARAMETER where F or F^-1 has an entry that is not
+///     finite or above 1e100 in absolute value, as no solution has that ofc_solve() wrote; an argument status.
 ///
 /// Reference: eq. 8.
 ofc_status ofc_normals_compute(const ofc_image *image, const ofc_solution *solution, float *normals,
@@ -466,7 +468,8 @@ typedef struct ofc_estimate {
 } ofc_estimate;
 
 /// The color-space quadratic form rho^T C rho = 1 (eqs. 9-12). Coefficients are in the order c11, c22, c33, c12, c13,
-/// c23 and in (pixel value)^-2.
+/// c23 and in (pixel value)^-2. Numbers that are known are finite: median_residual, dispersion, r_squared and pixel_noise are DBL_MAX or
+/// -DBL_MAX where the residuals of most pixels are above 3.4e38, as of colors whose values differ by a factor of 1e19.
 typedef struct ofc_color_fit {
     double robust[6];             ///< The coefficients that minimize the median squared residual.
     double median_residual;       ///< The square root of that median, over all usable pixels.
@@ -529,7 +532,7 @@ typedef struct ofc_shadow_plane {
 /// and below the saturation level, whose rho^T C rho lies within both bands, and that no shadow plane rejects. The test
 /// can be applied to other frames under the same lights.
 typedef struct ofc_inlier_test {
-    double saturation;       ///< Channels at or above this level are saturated.
+    double saturation;       ///< Channels at or above this level are saturated; infinite where none is.
     double residual_form[6]; ///< C of the first rejection, by residual: c11, c22, c33, c12, c13, c23.
     double residual_low;     ///< The smallest accepted rho^T C rho with `residual_form` as C.
     double residual_high;    ///< The largest accepted rho^T C rho with `residual_form` as C.
@@ -1032,9 +1035,9 @@ typedef struct ofc_integrability {
 /// far they are from being the normals of a surface. Slopes of normals with n3 below 0.05 are taken at 0.05.
 /// @param image  The picture.
 /// @param inlier_test  Which pixels to use; NULL for every usable pixel.
-/// @param f_inverse  F^-1.
+/// @param f_inverse  F^-1, of finite entries of at most 1e100 in absolute value: then the integral is finite.
 /// @param result  Output: the integral.
-/// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; an argument status.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; OFC_STATUS_INVALID_PARAMETER for other entries; an argument status.
 ///
 /// Reference: section 2.3, eq. 15.
 ofc_status ofc_integrability_integral(const ofc_image *image, const ofc_inlier_test *inlier_test,
@@ -1166,11 +1169,12 @@ typedef int32_t ofc_normalization;
 /// Computes normals n = F^-1 rho with any F.
 /// @param image  The picture.
 /// @param inlier_test  Which pixels have a normal; NULL for every usable pixel.
-/// @param f_inverse  F^-1.
+/// @param f_inverse  F^-1, of finite entries of at most 1e100 in absolute value: then every normal is finite. With
+///     OFC_NORMALIZATION_NONE a component too large for a float is FLT_MAX or -FLT_MAX.
 /// @param normalization  One of OFC_NORMALIZATION_*.
 /// @param normals  Output: height rows of width (x right, y up, z toward the camera) floats; zero for no normal.
 /// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
-/// @return OFC_STATUS_OK; an argument status.
+/// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER for other entries; an argument status.
 ///
 /// Reference: eq. 8.
 ofc_status ofc_normals_from_matrix(const ofc_image *image, const ofc_inlier_test *inlier_test, const double *f_inverse,
@@ -1190,8 +1194,9 @@ typedef struct ofc_covariance {
 /// Computes the covariances of C and F, to first order.
 /// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
 /// @param covariance  Output: the covariances.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by the direct method; an
-///     argument status.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by the direct method;
+///     OFC_STATUS_INVALID_PARAMETER for numbers, as no solution has that ofc_solve() wrote, whose covariances would not be
+///     finite; an argument status.
 ofc_status ofc_solution_covariance(const ofc_solution *solution, ofc_covariance *covariance);
 
 /// Computes the 1-sigma angle of each normal that ofc_normals_compute() makes: 68.3 % of errors are expected below it,

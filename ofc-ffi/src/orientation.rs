@@ -2,7 +2,7 @@
 
 use crate::prelude::*;
 use ofc_core::color::inliers::Inliers;
-use ofc_core::math::mat3::Mat3;
+use ofc_core::math::mat3::{Mat3, max_abs};
 use ofc_core::orientation::integrability;
 use ofc_core::orientation::matrix::{Orientation, compose};
 use ofc_core::surface::normals::{self, Length};
@@ -16,11 +16,25 @@ pub const OFC_NORMALIZATION_NONE: i32 = 1;
 
 constants!(Length = { Unit: OFC_NORMALIZATION_UNIT, Kept: OFC_NORMALIZATION_NONE });
 
-/// The orientation in a solution that has one which can be inverted, of finite numbers.
+/// The largest entry that F and F^-1 may have, in absolute value: with larger ones the square of a normal or of a slope could be
+/// larger than any number. Colors that are finite floats make F and F^-1
+/// of less than 1e70.
+const LARGEST_ENTRY: f64 = 1e100;
+
+/// This matrix, F or F^-1, if no entry is too large to make finite numbers of any pixel.
+fn bounded(matrix: Mat3) -> Result<Mat3, Refusal> {
+    ensure(max_abs(&matrix) <= LARGEST_ENTRY, OFC_STATUS_INVALID_PARAMETER)?;
+    Ok(matrix)
+}
+
+/// The orientation in a solution that has one which can be inverted, of finite numbers that are not too large.
 pub(crate) fn solved(solution: &ofc_solution) -> Result<Orientation, Refusal> {
     let whole = solution.outcome == OFC_STATUS_OK && solution.orientation.rank == 3;
     ensure(whole, OFC_STATUS_NOT_SOLVED)?;
-    FromC::from_c(solution.orientation)
+    let orientation = Orientation::from_c(solution.orientation)?;
+    bounded(orientation.f)?;
+    bounded(orientation.f_inverse)?;
+    Ok(orientation)
 }
 
 /// Composes F from the lengths, tilts and slants of its rows, and inverts it through its singular values.
@@ -59,9 +73,9 @@ pub unsafe extern "C" fn ofc_orientation_compose(
 /// far they are from being the normals of a surface. Slopes of normals with n3 below 0.05 are taken at 0.05.
 /// @param image  The picture.
 /// @param inlier_test  Which pixels to use; NULL for every usable pixel.
-/// @param f_inverse  F^-1.
+/// @param f_inverse  F^-1, of finite entries of at most 1e100 in absolute value: then the integral is finite.
 /// @param result  Output: the integral.
-/// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; an argument status.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_CELLS; OFC_STATUS_INVALID_PARAMETER for other entries; an argument status.
 ///
 /// Reference: section 2.3, eq. 15.
 #[unsafe(no_mangle)]
@@ -77,7 +91,7 @@ pub unsafe extern "C" fn ofc_integrability_integral(
         let test = call.inlier_test(inlier_test, &picture)?;
         let matrix = call.input_array::<f64, 9>(f_inverse)?;
         let result = call.output(result)?;
-        let integral = integrability::integral(&picture, test.selector(), &Mat3::from_c(matrix)?);
+        let integral = integrability::integral(&picture, test.selector(), &bounded(Mat3::from_c(matrix)?)?);
         *result = integral.ok_or(OFC_STATUS_NO_CELLS)?.to_c();
         Ok(OFC_STATUS_OK)
     })
@@ -86,11 +100,12 @@ pub unsafe extern "C" fn ofc_integrability_integral(
 /// Computes normals n = F^-1 rho with any F.
 /// @param image  The picture.
 /// @param inlier_test  Which pixels have a normal; NULL for every usable pixel.
-/// @param f_inverse  F^-1.
+/// @param f_inverse  F^-1, of finite entries of at most 1e100 in absolute value: then every normal is finite. With
+///     OFC_NORMALIZATION_NONE a component too large for a float is FLT_MAX or -FLT_MAX.
 /// @param normalization  One of OFC_NORMALIZATION_*.
 /// @param normals  Output: height rows of width (x right, y up, z toward the camera) floats; zero for no normal.
 /// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
-/// @return OFC_STATUS_OK; an argument status.
+/// @return OFC_STATUS_OK; OFC_STATUS_INVALID_PARAMETER for other entries; an argument status.
 ///
 /// Reference: eq. 8.
 #[unsafe(no_mangle)]
@@ -106,7 +121,7 @@ pub unsafe extern "C" fn ofc_normals_from_matrix(
     unsafe { Contract::kept() }.call(|call| {
         let picture = call.image(image)?;
         let test = call.inlier_test(inlier_test, &picture)?;
-        let matrix = Mat3::from_c(call.input_array(f_inverse)?)?;
+        let matrix = bounded(Mat3::from_c(call.input_array(f_inverse)?)?)?;
         let length = Length::from_c(normalization)?;
         let (normals, stride) = call.output_rows(normals, size(&picture), 3, normals_stride_bytes)?;
         normals::compute(&picture, test.selector(), &matrix, length, normals, stride)?;
@@ -119,7 +134,8 @@ pub unsafe extern "C" fn ofc_normals_from_matrix(
 /// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
 /// @param normals  Output: height rows of width (x right, y up, z toward the camera) floats; zero for no normal.
 /// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; an argument status.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_INVALID_PARAMETER where F or F^-1 has an entry that is not
+///     finite or above 1e100 in absolute value, as no solution has that ofc_solve() wrote; an argument status.
 ///
 /// Reference: eq. 8.
 #[unsafe(no_mangle)]

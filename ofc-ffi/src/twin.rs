@@ -153,16 +153,17 @@ macro_rules! constants {
 }
 pub(crate) use constants;
 
-/// The struct of C from that of the core: fields of the same name, renamed ones as `C: core`, those that the core alone has
-/// (`without`), and those that are zero in C (`zero`).
+/// The struct of C from that of the core: fields of the same name, renamed ones as `C: core`, numbers for which infinity is the
+/// largest number of its sign (`finite`), those that the core alone has (`without`), and those that are zero in C (`zero`).
 macro_rules! to_c {
-    ($core:ident => $c:ident { $($same:ident),* $(; $($field:ident: $twin:ident),+)? }
+    ($core:ident => $c:ident { $($same:ident),* $(; $($field:ident: $twin:ident),+)? } $(finite { $($finite:ident),+ })?
         $(without { $($skipped:ident),+ })? $(zero { $($zero:ident),+ })?) => {
         impl $crate::twin::ToC<$c> for $core {
             fn to_c(&self) -> $c {
-                let $core { $($same,)* $($($twin: $field,)+)? $($($skipped: _,)+)? } = self;
+                let $core { $($same,)* $($($twin: $field,)+)? $($($finite,)+)? $($($skipped: _,)+)? } = self;
                 $c {
                     $($same: $crate::twin::ToC::to_c($same),)*
+                    $($($finite: $finite.clamp(-f64::MAX, f64::MAX),)+)?
                     $($($field: $crate::twin::ToC::to_c($field),)+)?
                     $($($zero: Default::default(),)+)?
                 }

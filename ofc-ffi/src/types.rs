@@ -178,7 +178,7 @@ impl From<ofc_shadow_plane> for Face {
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_inlier_test {
-    /// Channels at or above this level are saturated.
+    /// Channels at or above this level are saturated; infinite where none is.
     pub saturation: f64,
     /// C of the first rejection, by residual: c11, c22, c33, c12, c13, c23.
     pub residual_form: [f64; 6],
@@ -225,7 +225,8 @@ impl FromC<ofc_inlier_test> for Inliers {
 }
 
 /// The color-space quadratic form rho^T C rho = 1 (eqs. 9-12). Coefficients are in the order c11, c22, c33, c12, c13,
-/// c23 and in (pixel value)^-2.
+/// c23 and in (pixel value)^-2. Numbers that are known are finite: median_residual, dispersion, r_squared and pixel_noise are DBL_MAX or
+/// -DBL_MAX where the residuals of most pixels are above 3.4e38, as of colors whose values differ by a factor of 1e19.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct ofc_color_fit {
@@ -268,9 +269,9 @@ pub struct ofc_color_fit {
 }
 
 to_c!(Fit => ofc_color_fit {
-    robust, median_residual, dispersion, r_squared, coefficients, covariance, residual_deviation, color_deviations,
-    noise_deviation, pixel_noise, degenerate_noise_deviation, subsets, by_colors; inlier_count: inliers
-} without { band, usable } zero { reserved });
+    robust, coefficients, covariance, residual_deviation, color_deviations, noise_deviation, degenerate_noise_deviation, subsets,
+    by_colors; inlier_count: inliers
+} finite { median_residual, dispersion, r_squared, pixel_noise } without { band, usable } zero { reserved });
 
 /// Where most of a set of numbers lies: the one-dimensional least median of squares.
 #[repr(C)]

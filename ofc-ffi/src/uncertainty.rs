@@ -44,8 +44,9 @@ fn sources(solution: &ofc_solution) -> Result<Sources, Refusal> {
 /// Computes the covariances of C and F, to first order.
 /// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
 /// @param covariance  Output: the covariances.
-/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by the direct method; an
-///     argument status.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by the direct method;
+///     OFC_STATUS_INVALID_PARAMETER for numbers, as no solution has that ofc_solve() wrote, whose covariances would not be
+///     finite; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_solution_covariance(
     solution: *const ofc_solution,
@@ -57,10 +58,13 @@ pub unsafe extern "C" fn ofc_solution_covariance(
         let covariance = call.output(covariance)?;
         let Sources { f, f_inverse, c, rotation, noise } = sources(&solution)?;
         let turn = of_turn(&f, &c, &rotation);
+        let (of_f, of_f_inverse) = (of_f(&f, &turn), of_f_inverse(&f_inverse, &turn));
+        let finite = of_f.iter().chain(&of_f_inverse).flatten().all(|entry| entry.is_finite());
+        ensure(finite, OFC_STATUS_INVALID_PARAMETER)?;
         *covariance = ofc_covariance {
             c: row_major(&whole(&c)),
-            f: row_major(&of_f(&f, &turn)),
-            f_inverse: row_major(&of_f_inverse(&f_inverse, &turn)),
+            f: row_major(&of_f),
+            f_inverse: row_major(&of_f_inverse),
             rotation: rotation.to_c(),
             pixel_noise: noise,
         };

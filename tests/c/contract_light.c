@@ -67,6 +67,7 @@ static void pentland_along(void **state)
     /* The axes and diagonals are what ofc_tilt_pentland() looks at. */
     static const int32_t eight[] = {1, 0, 0, 1, 1, 1, -1, 1}, parallel[] = {1, 2, -2, -4}, zero[] = {1, 0, 0, 0};
     static const int32_t far[] = {1, 0, 0, 1025}, extreme[] = {INT32_MIN, INT32_MAX, 0, 1};
+    static const int32_t extreme_alone[] = {INT32_MIN, 0, 0, 1};
     ofc_tilts expected;
     assert_int_equal(ofc_tilt_pentland(&image, NULL, &expected), OFC_STATUS_OK);
     assert_int_equal(ALONG(eight, 4), OFC_STATUS_OK);
@@ -82,6 +83,7 @@ static void pentland_along(void **state)
     REFUSED(OFC_STATUS_NO_TILT, out, ALONG(zero, 2));
     REFUSED(OFC_STATUS_NO_TILT, out, ALONG(far, 2));
     REFUSED(OFC_STATUS_NO_TILT, out, ALONG(extreme, 2));
+    REFUSED(OFC_STATUS_NO_TILT, out, ALONG(extreme_alone, 2));
     static int32_t shared[sizeof(ofc_tilts) / 4];
     assert_int_equal(ofc_tilt_pentland_along(&image, NULL, shared, 2, (ofc_tilts *)(void *)shared), OFC_STATUS_OVERLAP);
 }

@@ -124,6 +124,9 @@ fn any_set_of_directions_is_fitted() {
         &[],
         &[[0, 0], [1, 0]],
         &[[MAX_STEP + 1, 0], [0, 1]],
+        // It has no absolute value.
+        &[[i32::MIN, 0], [0, 1]],
+        &[[1, 0], [0, i32::MIN]],
         &[[1, 0], [0, 40]],
     ] {
         assert_eq!(along(none), None, "{none:?}");

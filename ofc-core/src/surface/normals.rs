@@ -10,10 +10,12 @@ use libm::sqrt;
 
 pub use super::rows::TooShort;
 
+const LARGEST: f64 = f32::MAX as f64;
+
 /// What becomes of a normal's length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
-    /// As the color gives it: near 1 where the model holds.
+    /// As the color gives it: near 1 where the model holds. A component that is too large for an `f32` is the largest one.
     Kept,
     /// Set to 1.
     Unit,
@@ -43,11 +45,10 @@ pub fn compute(
 #[must_use]
 #[inline]
 pub fn normal(f_inverse: &Mat3, color: [f32; 3], length: Length) -> [f64; 3] {
-    let [x, y, z] = mat3::apply(f_inverse, color.map(f64::from));
-    let factor = match length {
-        Length::Kept => 1.0,
+    let n = mat3::apply(f_inverse, color.map(f64::from));
+    match length {
+        Length::Kept => n.map(|component| component.clamp(-LARGEST, LARGEST)),
         // Of no color nothing comes: zero times the largest factor there is.
-        Length::Unit => 1.0 / sqrt((x * x + y * y + z * z).max(f64::MIN_POSITIVE)),
-    };
-    [x * factor, y * factor, z * factor]
+        Length::Unit => mat3::scale(n, 1.0 / sqrt(mat3::dot(n, n).max(f64::MIN_POSITIVE))),
+    }
 }

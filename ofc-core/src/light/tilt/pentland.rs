@@ -95,7 +95,7 @@ pub const MAX_STEP: i32 = 1024;
 pub fn tilts_along(image: &Image, inliers: impl Fn(&Window) -> u64, steps: &[[i32; 2]]) -> Option<Tilts> {
     let mut regression = Regression::default();
     for &[dx, dy] in steps {
-        if dx.abs().max(dy.abs()) > MAX_STEP {
+        if dx.unsigned_abs().max(dy.unsigned_abs()) > MAX_STEP.unsigned_abs() {
             return None;
         }
         let length = hypot(f64::from(dx), f64::from(dy));
