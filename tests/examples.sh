@@ -61,7 +61,7 @@ json "$out/scene/report.json" 'near([r["uncertainty"]["median_deg"]], 4.15, 0.12
 says "1 sigma"
 json "$out/scene/report.json" 'all(k in r for k in "coefficients C r_squared dispersion inliers norm_location norms cosines tilt_deg slant_deg candidates F ms version".split())'
 json "$out/scene/report.json" 'all(k in c for c in r["coefficients"] for k in ("value", "standard_error", "t", "p"))'
-picture "$out/scene/overview.png" 2180 1272 282828:1700 0072b2:900 d55e00:19000
+picture "$out/scene/overview.png" 2180 1296 282828:1700 0072b2:900 d55e00:19000
 for name in depth uncertainty; do picture "$out/scene/$name.png" 570 490 282828:500; done
 for name in normals inliers; do picture "$out/scene/$name.png" 420 440; done
 refuses "$out/scene/normals.png" 421 440
