@@ -40,6 +40,7 @@
 /// - Errors: every call checks its arguments: whether they are null, misaligned, too short, overlapping, empty, too large,
 ///   or not finite. On a negative status no output has been touched. That memory is as long as said cannot be checked:
 ///   a stream is told from the first 32 bytes at its address, which must be there; anything else in them is no stream.
+/// - Stack: below 12 KiB on x86-64 in a call that says nothing else. What is said of stack is for all arguments.
 /// - Threads: there is no global state. Calls on different outputs and workspaces may run at the same time.
 /// - Same bits: one version makes the same output bits of the same input and seed, on every target with IEEE 754
 ///   arithmetic.
@@ -135,7 +136,7 @@ size_t ofc_solve_workspace_size(int32_t width, int32_t height, const ofc_solve_p
 ///     solution then holds what was found on the way, and `reason` why. OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
 ///     OFC_STATUS_SATURATED when there is nothing to fit: ofc_pixel_counts_compute() says why.
 ///
-/// Stack: below 24 KiB. Reference: section 3.4.
+/// Stack: below 40 KiB. Reference: section 3.4.
 ofc_status ofc_solve(const ofc_image *image, const ofc_solve_params *params, void *workspace, size_t workspace_bytes,
                      uint8_t *inlier_mask, ofc_solution *solution);
 
@@ -210,7 +211,7 @@ size_t ofc_depth_workspace_size(int32_t width, int32_t height);
 ///     OFC_STATUS_TOO_FEW_PIXELS when no pixel of the mask is usable; an argument status, OFC_STATUS_INVALID_PARAMETER
 ///     also for normals with p or q.
 ///
-/// Stack: below 5 KiB. Reference: section 5; J. G. Harris, "A new approach to surface reconstruction: the coupled
+/// Stack: below 6 KiB. Reference: section 5; J. G. Harris, "A new approach to surface reconstruction: the coupled
 /// depth/slope model", ICCV 1987.
 ofc_status ofc_depth_integrate(const ofc_depth_input *input, const ofc_depth_params *params, void *workspace,
                                size_t workspace_bytes, float *depth, size_t depth_stride_bytes,
@@ -1395,7 +1396,7 @@ size_t ofc_check_workspace_size(int32_t width, int32_t height);
 /// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_TOO_FEW_PIXELS when there are no inliers; an argument
 ///     status, OFC_STATUS_INVALID_PARAMETER for a surface of another size.
 ///
-/// Reference: sections 4-6.
+/// Stack: below 32 KiB. Reference: sections 4-6.
 ofc_status ofc_check(const ofc_image *image, const ofc_solution *solution, const ofc_depth_map *depth, void *workspace,
                      size_t workspace_bytes, ofc_check_result *result);
 
@@ -1912,7 +1913,7 @@ size_t ofc_segment_workspace_size(int32_t width, int32_t height);
 /// @param count  Output: how many regions were found, perhaps none.
 /// @return OFC_STATUS_OK; an argument status.
 ///
-/// Stack: below 24 KiB. Reference: section 1.2; L. L. Kontsevich, A. P. Petrov, I. S. Vergelskaya, JOSA A 11, 1994.
+/// Stack: below 16 KiB. Reference: section 1.2; L. L. Kontsevich, A. P. Petrov, I. S. Vergelskaya, JOSA A 11, 1994.
 ofc_status ofc_segment(const ofc_image *image, const ofc_segment_params *params, void *workspace,
                        size_t workspace_bytes, uint16_t *labels, ofc_region *regions, int32_t *count);
 

@@ -170,7 +170,7 @@ pub extern "C" fn ofc_check_workspace_size(width: i32, height: i32) -> usize {
 /// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_TOO_FEW_PIXELS when there are no inliers; an argument
 ///     status, OFC_STATUS_INVALID_PARAMETER for a surface of another size.
 ///
-/// Reference: sections 4-6.
+/// Stack: below 32 KiB. Reference: sections 4-6.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_check(
     image: *const ofc_image,

@@ -173,7 +173,7 @@ fn plane<'a, T: Plain>(
 ///     OFC_STATUS_TOO_FEW_PIXELS when no pixel of the mask is usable; an argument status, OFC_STATUS_INVALID_PARAMETER
 ///     also for normals with p or q.
 ///
-/// Stack: below 5 KiB. Reference: section 5; J. G. Harris, "A new approach to surface reconstruction: the coupled
+/// Stack: below 6 KiB. Reference: section 5; J. G. Harris, "A new approach to surface reconstruction: the coupled
 /// depth/slope model", ICCV 1987.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_depth_integrate(

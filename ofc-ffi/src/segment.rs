@@ -139,7 +139,7 @@ pub extern "C" fn ofc_segment_workspace_size(width: i32, height: i32) -> usize {
 /// @param count  Output: how many regions were found, perhaps none.
 /// @return OFC_STATUS_OK; an argument status.
 ///
-/// Stack: below 24 KiB. Reference: section 1.2; L. L. Kontsevich, A. P. Petrov, I. S. Vergelskaya, JOSA A 11, 1994.
+/// Stack: below 16 KiB. Reference: section 1.2; L. L. Kontsevich, A. P. Petrov, I. S. Vergelskaya, JOSA A 11, 1994.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_segment(
     image: *const ofc_image,

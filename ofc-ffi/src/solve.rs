@@ -413,7 +413,7 @@ pub unsafe extern "C" fn ofc_solve_workspace_size(
 ///     solution then holds what was found on the way, and `reason` why. OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or
 ///     OFC_STATUS_SATURATED when there is nothing to fit: ofc_pixel_counts_compute() says why.
 ///
-/// Stack: below 24 KiB. Reference: section 3.4.
+/// Stack: below 40 KiB. Reference: section 3.4.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_solve(
     image: *const ofc_image,

@@ -10,8 +10,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Functions by address, and whom each may call.
 #[derive(Debug, Default)]
 pub struct CallGraph {
-    names: BTreeMap<u64, String>,
-    calls: BTreeMap<u64, BTreeSet<u64>>,
+    pub(crate) names: BTreeMap<u64, String>,
+    pub(crate) calls: BTreeMap<u64, BTreeSet<u64>>,
     /// Calls and pointers to functions whose target this reading cannot tell.
     pub unresolved: Vec<String>,
 }
@@ -220,7 +220,7 @@ fn destination(operands: &str) -> &str {
 }
 
 /// `8548 <name>...`: the number.
-fn hexadecimal(text: &str) -> Option<u64> {
+pub(crate) fn hexadecimal(text: &str) -> Option<u64> {
     u64::from_str_radix(text.split_whitespace().next()?, 16).ok()
 }
 
@@ -230,7 +230,7 @@ fn comment(operands: &str) -> Option<u64> {
 }
 
 /// `0000000000008548 <name>:`: address and name.
-fn header(line: &str) -> Option<(u64, String)> {
+pub(crate) fn header(line: &str) -> Option<(u64, String)> {
     let (address, name) = line.strip_suffix(">:")?.split_once(" <")?;
     Some((hexadecimal(address)?, name.to_owned()))
 }

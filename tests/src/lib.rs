@@ -21,6 +21,7 @@ pub mod shapes;
 pub mod shipped;
 pub mod slant_oracle;
 pub mod solved;
+pub mod stack_depth;
 pub mod tolerances;
 
 /// README's program in Rust compiles.
