@@ -3,6 +3,7 @@
 
 pub mod bust;
 pub mod call_graph;
+pub mod camera;
 pub mod depth_maps;
 pub mod depth_oracle;
 pub mod depth_scenes;
@@ -19,6 +20,7 @@ pub mod relief_scenes;
 pub mod shaded_scenes;
 pub mod shapes;
 pub mod shipped;
+pub mod shots;
 pub mod slant_oracle;
 pub mod solved;
 pub mod stack_depth;
