@@ -61,6 +61,25 @@ fn refine(params: Params) {
     }
 }
 
+/// The first row that a warm frame looks at, which the surface reaches here, makes no pairs with one above it, whatever is left there
+/// of the frame before.
+#[test]
+fn a_warm_frame_knows_nothing_of_what_its_memory_held() {
+    let scene = Scene::render(110, 60, three_lights(), sphere(60.0, 36.0)).encode();
+    let image = scene.image();
+    for params in [direct(Params::default()), Params::default()] {
+        let mut camera = Camera::new(&image, params);
+        assert_eq!(camera.cold(&image), Ok(Pass::Refine));
+        for _ in 0..5 {
+            let mut other = Camera { state: camera.state.clone(), ..Camera::new(&image, params) };
+            other.values.fill(1000.0);
+            assert_eq!(camera.frame(&image), Ok(Pass::Refine));
+            assert_eq!(other.frame(&image), Ok(Pass::Refine));
+            assert_eq!(digits(other.state.solution()), digits(camera.state.solution()));
+        }
+    }
+}
+
 #[test]
 fn warm_frames_look_at_as_many_pixels_as_wanted() {
     let mut seen = Vec::new();
