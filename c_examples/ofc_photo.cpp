@@ -66,10 +66,11 @@ int run(const Options &options)
             found = solve_frame();
             found.restrict_to(picture.mask);
         }
-        if (found.solved() || ellipsoid == nullptr) {
+        if (ellipsoid == nullptr || found.is_better_than(*ellipsoid)) {
             write_relief(out.string(), frame, found, ellipsoid);
             if (ellipsoid != nullptr)
-                std::printf("%-10s %s\n", "ellipsoid", ofc_status_message(ellipsoid->status));
+                std::printf("%-10s %s\n", "ellipsoid",
+                            ellipsoid->solved() ? "fits fewer pixels, and expects larger errors" : ofc_status_message(ellipsoid->status));
             for (const Line &line : summary(found))
                 std::fprintf(found.solved() ? stdout : stderr, "%-10s %s\n", line.label.c_str(), line.text.c_str());
             say_where(out, found.solved() ? "overview.png" : "report.json");
@@ -89,9 +90,11 @@ int run(const Options &options)
     const ofc_orientation_method method = options.direct() ? OFC_ORIENTATION_DIRECT : OFC_ORIENTATION_JOINT;
     Result result = solve_by(picture, method);
     const bool asks_for_paint = options.paint.choice == "uneven";
-    if (!result.solved() && options.model == "auto" && !options.paper_report() && !asks_for_paint && result.status >= 0 &&
-        relief(&result).solved())
-        return 0;
+    if (options.model == "auto" && !options.direct() && !options.paper_report() && !asks_for_paint && result.status >= 0) {
+        const ReliefResult found = relief(&result);
+        if (found.is_better_than(result))
+            return 0;
+    }
     // The picture that was solved: as it is, or without its paint.
     Picture solved = picture;
     if (options.paint.choice != "even") {

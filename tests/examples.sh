@@ -177,6 +177,23 @@ expect 2 "$table1" "$out/scene/normals.tiff"
 says "neither"
 expect 2 "$table1" --noise -1
 
+# A relief on a plane, under lights that fall off: its height from the colors alone, and from the ball's radius and a background.
+height=$(python3 tests/gel_png.py "$out/gel.png" 12)
+python3 tests/gel_png.py "$out/bare.png" 0 >/dev/null
+for options in "" "--model relief" "--model relief --background $out/bare.png --ball-radius 40"; do
+    # shellcheck disable=SC2086
+    expect 0 "$photo" "$out/gel.png" $options --out "$out/relief"
+    says "a relief on a plane"
+    json "$out/relief/report.json" "r['model'] == 'relief' and near([r['depth']['highest']], $height, 0.5)" # 13.85, 13.85 and 14.08 of 13.89
+    for file in classes.png normals.png normals.tiff uncertainty.tiff depth.tiff depth.png mesh.ply overview.png; do
+        [ -s "$out/relief/$file" ] || fail "no $file of a relief"
+    done
+done
+expect 1 "$photo" "$out/bare.png" --model relief --out "$out/relief"
+says "nothing differs"
+[ ! -e "$out/relief/classes.png" ] || fail "classes of a picture without a relief"
+expect 2 "$photo" "$out/gel.png" --ball-radius -1
+
 # Table 2, section 5's checks and their figures, by the direct method whatever the rest of the program does.
 expect 0 "$photo" --report paper --out "$out/paper"
 for line in "direct method" "shadows kept (auto)" "Lee-Rosenfeld" "24.64     35.10     15.98" "correlation of input" "shaded depth" \

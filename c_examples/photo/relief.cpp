@@ -103,6 +103,16 @@ json report(const ReliefResult &result, const Result *ellipsoid)
 
 } // namespace
 
+bool ReliefResult::is_better_than(const Result &ellipsoid) const
+{
+    if (!solved() || !ellipsoid.solved())
+        return solved();
+    constexpr double most_pixels = 0.8;
+    const ofc_solution &s = ellipsoid.solution;
+    return relief.scale_source != OFC_SCALE_UNKNOWN && relief.expected_error < s.confidence.error_rad &&
+           s.inlier_count < most_pixels * s.pixel_counts.usable;
+}
+
 void ReliefResult::restrict_to(const cv::Mat &mask)
 {
     const cv::Mat outside = mask == 0;

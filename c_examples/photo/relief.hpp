@@ -13,6 +13,8 @@ struct ReliefResult {
     Surface surface;         // over the whole frame, zero on the plane
     std::optional<double> median_error_deg; // over the contact, where the truth is known
 
+    // Whether to take it instead of the first model: that is refused, or leaves out many pixels and expects larger errors.
+    bool is_better_than(const Result &ellipsoid) const;
     // Leaves out what is not in the mask.
     void restrict_to(const cv::Mat &mask);
     bool solved() const { return status == OFC_STATUS_OK; }
