@@ -1835,7 +1835,7 @@ size_t ofc_relief_workspace_size(int32_t width, int32_t height);
 /// @return OFC_STATUS_OK; OFC_STATUS_NO_RELIEF with the reason in `relief`, whose other fields are zero, and `classes` untouched;
 ///     OFC_STATUS_EMPTY for a picture that is too small; OFC_STATUS_TOO_FEW_PIXELS; an argument status.
 ///
-/// Stack: below 8 KiB. Reference: docs/relief.md.
+/// Stack: below 16 KiB. Reference: docs/relief.md.
 ofc_status ofc_relief_solve(const ofc_image *image, const ofc_image *background, const ofc_relief_params *params,
                             void *workspace, size_t workspace_bytes, ofc_relief_class *classes, ofc_relief *relief);
 

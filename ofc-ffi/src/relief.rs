@@ -290,7 +290,7 @@ pub extern "C" fn ofc_relief_workspace_size(width: i32, height: i32) -> usize {
 /// @return OFC_STATUS_OK; OFC_STATUS_NO_RELIEF with the reason in `relief`, whose other fields are zero, and `classes` untouched;
 ///     OFC_STATUS_EMPTY for a picture that is too small; OFC_STATUS_TOO_FEW_PIXELS; an argument status.
 ///
-/// Stack: below 8 KiB. Reference: docs/relief.md.
+/// Stack: below 16 KiB. Reference: docs/relief.md.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_relief_solve(
     image: *const ofc_image,

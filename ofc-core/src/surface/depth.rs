@@ -82,7 +82,7 @@ pub const fn need(width: usize, height: usize) -> Option<Need> {
 /// Regions without connection each have zero mean, unless [`DepthInput::prior`] has a finite depth in them. The same
 /// input gives the same bits on every machine.
 ///
-/// Stack: less than 5 KiB.
+/// Stack: less than 6 KiB.
 ///
 /// # Errors
 /// See [`DepthError`].
