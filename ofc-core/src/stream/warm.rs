@@ -16,13 +16,14 @@ use super::orientation::nearest_rows;
 use super::parameters::FULL;
 use super::pass::Pass;
 use super::state::State;
-use crate::color::ellipsoid::{self, Coefficients};
+use crate::color::ellipsoid::{self, Coefficients, Ellipsoid};
 use crate::color::inliers::{Band, Inliers};
 use crate::color::lmeds::{MIN_PIXELS, Refit};
 use crate::color::regression::Moments;
 use crate::light::constrained_slant::{self, Candidates, SlantRoot};
 use crate::light::tilt::{TiltEstimator, Tilts, pentland};
 use crate::math::mat3::{self, Mat3};
+use crate::orientation::matrix::Orientation;
 use crate::picture::{Image, PixelCounts, Window, for_each_bit};
 use crate::solve::{SMALLEST_NOISE_MARGIN, orient, oriented};
 use libm::{atan2, sqrt};
@@ -117,7 +118,7 @@ impl State {
         Some(change)
     }
 
-    /// Adopts these slants, with this form of C and these tilts; `None`, with nothing done, where F is rank-deficient.
+    /// The slants for this form of C and these tilts, adopted; `None`, with nothing done, where F is rank-deficient.
     #[inline(never)]
     fn adopt_slants(
         &mut self,
@@ -127,33 +128,39 @@ impl State {
     ) -> Option<([f64; 3], [f64; 3])> {
         let ellipsoid = ellipsoid::decompose(form).ok()?;
         let orientation = orient(&ellipsoid, slants, tilts.tilts, &self.params.solve);
+        self.adopt(&ellipsoid, tilts, slants, &orientation)
+    }
+
+    /// F of this form of C with the transformation kept, adopted; `None`, with nothing done, where it is rank-deficient.
+    #[inline(never)]
+    fn adopt_form(&mut self, form: &Coefficients) -> Option<([f64; 3], [f64; 3])> {
+        let ellipsoid = ellipsoid::decompose(form).ok()?;
+        let root_inverse = ellipsoid.root_inverse();
+        let rows = nearest_rows(&self.solution.choice.as_ref()?.orientation.f_inverse, &root_inverse);
+        let (tilts, new) = oriented(&rows, &root_inverse, self.params.solve.rank_threshold);
+        let change = self.adopt(&ellipsoid, &tilts, new.slants, &new.orientation)?;
+        if let Some(joint) = &mut self.solution.joint {
+            joint.rows = rows;
+        }
+        Some(change)
+    }
+
+    /// Takes this orientation over with what it follows from, and says what it changes; `None`, with nothing done, where it is
+    /// rank-deficient.
+    fn adopt(
+        &mut self,
+        ellipsoid: &Ellipsoid,
+        tilts: &Tilts,
+        slants: [f64; 3],
+        orientation: &Orientation,
+    ) -> Option<([f64; 3], [f64; 3])> {
         let choice = self.solution.choice.as_mut()?;
         if orientation.rank < 3 {
             return None;
         }
         let change = change(&choice.orientation.f, &orientation.f);
-        (choice.slants, choice.orientation) = (slants, orientation);
-        (self.solution.ellipsoid, self.solution.tilts) = (Some(ellipsoid), Some(*tilts));
-        Some(change)
-    }
-
-    /// Adopts this form of C and keeps the transformation; `None`, with nothing done, where F is rank-deficient.
-    #[inline(never)]
-    fn adopt_form(&mut self, form: &Coefficients) -> Option<([f64; 3], [f64; 3])> {
-        let ellipsoid = ellipsoid::decompose(form).ok()?;
-        let choice = self.solution.choice.as_mut()?;
-        let root_inverse = ellipsoid.root_inverse();
-        let rows = nearest_rows(&choice.orientation.f_inverse, &root_inverse);
-        let (tilts, new) = oriented(&rows, &root_inverse, self.params.solve.rank_threshold);
-        if new.orientation.rank < 3 {
-            return None;
-        }
-        let change = change(&choice.orientation.f, &new.orientation.f);
-        *choice = new;
-        if let Some(joint) = &mut self.solution.joint {
-            joint.rows = rows;
-        }
-        (self.solution.ellipsoid, self.solution.tilts) = (Some(ellipsoid), Some(tilts));
+        (choice.slants, choice.orientation) = (slants, *orientation);
+        (self.solution.ellipsoid, self.solution.tilts) = (Some(*ellipsoid), Some(*tilts));
         Some(change)
     }
 
