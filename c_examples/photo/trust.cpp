@@ -55,21 +55,20 @@ double open_outline(const cv::Mat &mask, const cv::Mat &inliers, const cv::Mat &
     std::vector<std::vector<cv::Point>> outlines;
     cv::findContours(inliers, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
     const cv::Rect frame({}, inliers.size());
-    int open = 0, ends = 0;
+    int open = 0, sides = 0;
     for (const auto &outline : outlines)
         for (const cv::Point p : outline)
             for (const cv::Point step : {cv::Point(1, 0), cv::Point(0, 1), cv::Point(-1, 0), cv::Point(0, -1)}) {
                 const cv::Point q = p + step;
                 const bool is_steep = normals.at<cv::Vec3f>(p)[2] < silhouette_n3;
-                if (!frame.contains(q))
-                    open++;
-                else if (inliers.at<uchar>(q) == 0 && is_steep)
-                    ends++;
-                else if (!mask.empty() && mask.at<uchar>(q) == 0)
-                    open++;
-                // What else is beside the outline may be a shadow or a highlight, in which the surface may go on or end.
+                const bool is_inside = frame.contains(q);
+                if (is_inside && inliers.at<uchar>(q) != 0)
+                    continue;
+                sides++;
+                // Beside a shadow or a highlight the surface may go on or end.
+                open += !is_inside || (!is_steep && !mask.empty() && mask.at<uchar>(q) == 0);
             }
-    return open + ends > 0 ? static_cast<double>(open) / (open + ends) : std::nan("");
+    return sides > 0 ? static_cast<double>(open) / sides : std::nan("");
 }
 
 std::string trust(const Result &result)
