@@ -11,12 +11,12 @@
 //!
 //! without an intercept. No color need lie on an ellipsoid around black, which the colors of a gel do not.
 //!
-//! 1. [`cells`] averages the picture over some 160 cells across; [`reference`] finds B.
-//! 2. [`contact`] finds the cells that differ from the plane by more than noise, the contact, and a skirt around it.
-//! 3. [`circulation`] finds W up to its scale and sign: the field (n1, n2) of a surface has no circulation around any window,
+//! 1. `cells` averages the picture over some 160 cells across; `reference` finds B.
+//! 2. `contact` finds the cells that differ from the plane by more than noise, the contact, and a skirt around it.
+//! 3. `circulation` finds W up to its scale and sign: the field (n1, n2) of a surface has no circulation around any window,
 //!    to first order, so W minimizes w^T M w / w^T S w with M the sum of squared circulations and S the energy of delta.
 //! 4. The sign follows from what is known beforehand: a contact rises from the plane, so its normals point outward.
-//! 5. [`scale`] finds the scale, which integrability cannot give: from the radius of a ball that was pressed in, or by comparison
+//! 5. `scale` finds the scale, which integrability cannot give: from the radius of a ball that was pressed in, or by comparison
 //!    with the ellipsoid of the colors of the inner contact (eq. 10), where these bend enough to have one. Otherwise it is
 //!    unknown, and the uncertainty says so.
 //!

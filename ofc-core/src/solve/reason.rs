@@ -1,6 +1,6 @@
 //! Why a picture is refused, or its answer doubted: the cause in the scene, beside the status that says how far the pipeline came.
 //!
-//! [`find`] runs once, at the end of [`solve`](fn@super::solve). An answer that is well determined by most of the pixels costs it a
+//! `find` runs once, at the end of [`solve`](fn@super::solve). An answer that is well determined by most of the pixels costs it a
 //! look at the counts and at a few rows. Otherwise it passes over the picture and tries the causes one by one, those first that
 //! would look like others: an inverted mask leaves something flat, and a picture that is too dark has no third dimension.
 //! What it compares with is mostly the noise, which it measures from pixel to pixel: the residuals of a fit that failed say

@@ -24,7 +24,7 @@ const REJECTION: f64 = 4.0;
 /// At most about so many cells are fitted.
 const MOST_CELLS: usize = 6000;
 
-/// Rows of coefficients of the terms that [`terms`] lists, in pixel values: one row a channel.
+/// Rows of coefficients of the terms that `terms` lists, in pixel values: one row a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Polynomial {
     /// Red, green, blue.
