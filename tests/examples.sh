@@ -273,7 +273,7 @@ says "mean error"
 
 data=${OFC_DATA:-../shared/data}
 if [ -d "$data" ]; then
-    expect 0 "$photo" "$data/cat_figurine/rgb.png" --mask "$data/cat_figurine/mask.png" --out "$out/cat"
+    expect 0 "$photo" "$data/cat_figurine/rgb.png" --mask "$data/cat_figurine/mask.png" --paint even --out "$out/cat"
     json "$out/cat/report.json" 'near([r["inliers"]["after_norms"]], 90073, 2700)'
     # Near lights: divided by the gel alone, the ball of 9.5 mm is nearer to the truth.
     ball=$data/gelsight_ball_9mm
@@ -285,7 +285,7 @@ if [ -d "$data" ]; then
     expect 0 "$photo" "$data/cat_figurine/rgb.png" --mask "$data/cat_figurine/mask.png" --save-planes --out "$out/planes"
     for fit in median squares; do
         expect 0 "$photo" --planes "$out/planes/plane_r.png" "$out/planes/plane_g.png" "$out/planes/plane_b.png" \
-            --mask "$data/cat_figurine/mask.png" --truth "$out/cat/normals.tiff" --fit "$fit" --out "$out/stereo_$fit"
+            --mask "$data/cat_figurine/mask.png" --paint even --truth "$out/cat/normals.tiff" --fit "$fit" --out "$out/stereo_$fit"
     done
     json "$out/stereo_median/report.json" 'r["median_error_deg"] < 0.001'
     json "$out/stereo_squares/report.json" 'r["parameters"]["fit"] == "squares" and near([r["median_error_deg"]], 9.87, 0.3)'
