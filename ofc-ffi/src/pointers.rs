@@ -9,7 +9,7 @@ use crate::status::{
     OFC_STATUS_WORKSPACE_TOO_SMALL, Refusal, ensure, ofc_status,
 };
 use crate::twin::FromC;
-use core::ffi::c_void;
+use core::ffi::{c_char, c_void};
 use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 use core::slice;
@@ -65,6 +65,11 @@ impl Contract {
 pub fn bytes(need: Need) -> usize {
     let bytes = need.bytes();
     if isize::try_from(bytes).is_ok() { bytes } else { 0 }
+}
+
+/// A text of C, which ends with a zero.
+pub const fn text_of(bytes: &'static [u8]) -> *const c_char {
+    bytes.as_ptr().cast()
 }
 
 /// What `take` makes of a pointer that may be NULL.

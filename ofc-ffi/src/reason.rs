@@ -95,7 +95,7 @@ macro_rules! text {
             Some(text) => *text,
             None => [0; BYTES.len()],
         };
-        TEXT.as_ptr().cast()
+        text_of(&TEXT)
     }};
 }
 

@@ -6,6 +6,15 @@ void mix_paint(const ofc_image *image)
 {
     static ofc_paint paint;
     ofc_paint_params params;
+    ofc_solve_params solve;
+    ofc_pixel_counts counts = {0};
+    ofc_reason reason = 0;
+    mix_status(ofc_solve_params_default(&solve));
+    mix_status(ofc_pixel_counts_compute(image, &solve, workspace, workspace_bytes, &counts, &reason));
+    mix_pixel_counts(&counts);
+    mix_status(reason);
+    mix_integer(ofc_paint_workspace_size());
+    mix_integer(ofc_paint_albedo_workspace_size(image->width, image->height));
     mix_status(ofc_paint_params_default(&params));
     params.seed = 5;
     const ofc_status status = ofc_paint_estimate(image, &params, workspace, workspace_bytes, &paint);

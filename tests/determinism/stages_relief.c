@@ -48,6 +48,7 @@ void mix_relief(void)
     below.pixels = plane;
     ofc_relief_params params;
     mix_status(ofc_relief_params_default(&params));
+    mix_integer(ofc_relief_workspace_size(ACROSS, DOWN));
     for (int given = 0; given < 2; given++) {
         const ofc_image *const background = given ? &below : NULL;
         ofc_relief relief;
