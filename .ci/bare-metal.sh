@@ -6,12 +6,10 @@
 board_packages=(gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm qemu-system-misc)
 
 # board NAME: sets what is special to it: `triple` and `flags` for rustc, `target`, the C compiler with the options that
-# choose the processor, `runtime`, what the library takes of its runtime from elsewhere than Rust, `compiler` and `emulator`
-# with all their options, `start`, the sources that come before main(), and `tools`, the prefix of nm and size.
+# choose the processor, `compiler` and `emulator` with all their options, `start`, the sources that come before main(), and `tools`, the prefix of nm and size.
 board() {
     local folder=c_examples/firmware/board layout
     start=("$folder"/{start,memory}.c)
-    runtime=()
     # Inlining and aligned loops cost more flash than they save instructions; short constants may lie with the code.
     flags="-Cllvm-args=-inline-threshold=5 -Cllvm-args=-align-loops=1 -Cllvm-args=-arm-promote-constant=1"
     case $1 in
@@ -31,9 +29,8 @@ board() {
         layout=mps2.ld
         emulator=(qemu-system-arm -M mps2-an386)
         start+=("$folder/cortex_m.c")
-        # libgcc has double precision in assembler: sums and products in half the instructions, quotients in four times as
-        # many, and as correctly rounded.
-        runtime=(-lgcc)
+        # Double precision is that of Rust's runtime. libgcc's sums and products take half the instructions, but not all of its
+        # results have the bits of every other target.
         ;;
     riscv32)
         triple=riscv32imafc-unknown-none-elf
@@ -62,8 +59,8 @@ rust_packages() {
     done
 }
 
-# build_archive NAME TRIPLE FLAGS [FEATURE]: libofc.a by the profile `firmware`, with these flags for rustc, for `target`,
-# `runtime` and `tools`. Sets `archive` to its path, and `raw` to that of the one from cargo.
+# build_archive NAME TRIPLE FLAGS [FEATURE]: libofc.a by the profile `firmware`, with these flags for rustc, for `target` and
+# `tools`. Sets `archive` to its path, and `raw` to that of the one from cargo.
 build_archive() {
     local name=$1 triple=$2 flags=$3 features=${4-} sysroot folder=target/bare/$1
     local build=(cargo rustc --quiet --profile firmware -p ofc-ffi --lib --crate-type staticlib
@@ -78,7 +75,7 @@ build_archive() {
     fi
     raw=$folder/$triple/firmware/libofc.a archive=$folder/libofc.a
     CC="${target[*]}" NM=$tools-nm OBJCOPY=$tools-objcopy AR=$tools-ar \
-        ofc-ffi/package/archive.sh "$raw" "$archive" "${runtime[@]}"
+        ofc-ffi/package/archive.sh "$raw" "$archive"
 }
 
 # cannot_panic PROGRAM: ends the script if the program for the board that was set last holds panic machinery.

@@ -1,16 +1,14 @@
 #!/bin/sh
-# archive.sh RAW CLEAN [OPTION...]: from the archive that cargo makes, one that defines nothing but ofc_*.
+# archive.sh RAW CLEAN: from the archive that cargo makes, one that defines nothing but ofc_*.
 #
 # RAW brings along the runtime of the Rust compiler, with functions such as fmod, cbrt and fma: linked before -lm it would give
 # them to the whole program, and beside another Rust library it would define them twice. So the object of the library is linked
-# with what it needs of them, and all names but ofc_* become local. Sections stay apart, for --gc-sections. Libraries among the
-# OPTIONs come before that runtime.
+# with what it needs of them, and all names but ofc_* become local. Sections stay apart, for --gc-sections.
 #
 # CC (with the options that choose the target), NM, OBJCOPY and AR name the tools.
 set -eu
 raw=$(realpath "$1")
 clean=$2
-shift 2
 mkdir -p "$(dirname "$clean")"
 work=$(mktemp -d "$clean.XXXXXX")
 trap 'rm -rf "$work"' EXIT
@@ -22,7 +20,7 @@ if [ "$(wc -l <"$work/members")" -ne 1 ]; then
 fi
 (cd "$work" && ${AR:-ar} x "$raw" "$(cat members)" && mv "$(cat members)" library.o)
 # shellcheck disable=SC2086 # CC may hold options
-${CC:-cc} -nostdlib -r "$work/library.o" "$@" "$raw" -o "$work/linked.o"
+${CC:-cc} -nostdlib -r "$work/library.o" "$raw" -o "$work/linked.o"
 # Without bitcode for the compiler's own use, which binutils with LLVM's plugin take for the whole object.
 ${OBJCOPY:-objcopy} --wildcard --keep-global-symbol='ofc_*' --remove-section=.llvmbc --remove-section=.llvmcmd \
     "$work/linked.o" "$work/ofc.o"

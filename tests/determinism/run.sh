@@ -72,7 +72,7 @@ for name in cortex-m4f cortex-m7 riscv32; do
     compare "$name" emulate "$out/$name"
 done
 
-tools=aarch64-linux-gnu target=(aarch64-linux-gnu-gcc) runtime=()
+tools=aarch64-linux-gnu target=(aarch64-linux-gnu-gcc)
 build_archive aarch64 aarch64-unknown-none "" full-streams
 "${target[@]}" "${options[@]}" "${portable[@]}" "$here/linux.c" "$memory" "$archive" -o "$out/aarch64"
 compare aarch64 qemu-aarch64 "$out/aarch64"

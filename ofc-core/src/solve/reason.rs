@@ -77,7 +77,7 @@ pub(super) fn find(image: &Image, params: &Params, solution: &Solution, workspac
         return found;
     }
     let is_refused = solution.outcome != Outcome::Solved;
-    if is_refused || is_weak(solution) || channels::one_hardly_varies(image, &solution.inliers) {
+    if is_refused || is_weak(params, solution) || channels::one_hardly_varies(image, &solution.inliers) {
         let usable = without_extremes(image, solution.inliers.usable.saturation, workspace);
         if let Some(survey) = Survey::of(image, |window| usable.exposed(window), workspace)
             && let Some(found) = look(image, usable, solution, &survey, workspace)
@@ -94,10 +94,12 @@ pub(super) fn find(image: &Image, params: &Params, solution: &Solution, workspac
         .unwrap_or(Finding::NONE)
 }
 
-/// Whether an answer rests on too few of the pixels, or on too little, to go without a look at the picture.
-fn is_weak(solution: &Solution) -> bool {
+/// Whether an answer rests on too few of the pixels, or on too little, to go without a look at the picture. Where shadows are not
+/// looked for they are outliers, and often a quarter of the pixels.
+fn is_weak(params: &Params, solution: &Solution) -> bool {
     const SAFE_MARGIN: f64 = 2.0;
-    let few = 4 * solution.inlier_count < 3 * solution.pixel_counts.usable;
+    let least_quarters = if params.rejects_shadows() { 3 } else { 2 };
+    let few = 4 * solution.inlier_count < least_quarters * solution.pixel_counts.usable;
     let safe = |noise: f64, degenerate: f64| degenerate > SAFE_MARGIN * noise;
     few || !solution.fit.as_ref().is_some_and(|fit| safe(fit.noise_deviation, fit.degenerate_noise_deviation))
 }

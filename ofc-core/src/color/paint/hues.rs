@@ -86,7 +86,8 @@ fn step(sampler: &mut Sampler, distance: f64, darkest: f64) -> Option<[f32; 2]> 
     let before = minus(second, first);
     let behind = minus(fourth, third);
     let between = minus(third, second);
-    let step = [0, 1].map(|i: usize| between[i] - 0.5 * (before[i] + behind[i]));
+    let ([x, y], [x1, y1], [x2, y2]) = (between, before, behind);
+    let step = [x - 0.5 * (x1 + x2), y - 0.5 * (y1 + y2)];
     let square = |[a, b]: [f64; 2]| a * a + b * b;
     let size = square(step);
     let is_step = size > SMALLEST * SMALLEST && square(before).max(square(behind)) < BESIDE * BESIDE * size;

@@ -30,7 +30,8 @@ impl<'a> Sampler<'a> {
                 high = [high[0].max(last), high[1].max(window.y)];
             }
         });
-        let size = [0, 1].map(|i| if low[i] <= high[i] { high[i] - low[i] + 1 } else { 0 });
+        let extent = |low: usize, high: usize| if low <= high { high - low + 1 } else { 0 };
+        let size = [extent(low[0], high[0]), extent(low[1], high[1])];
         Self { image, usable, rng, corner: low, size, window: Window::new() }
     }
 
