@@ -3,7 +3,7 @@
 //! Near lights fall off across the field, each channel's in its own way, so that F changes from place to place. A flat surface
 //! shows by how much: divided by it, and scaled by its mean, the picture is as under distant lights.
 
-use crate::picture::{Image, Window};
+use crate::picture::{Image, Window, span};
 use core::fmt;
 
 /// A background pixel is dark, and says nothing, if a channel is below this share of the channel's mean.
@@ -65,9 +65,8 @@ pub fn divide(
     if [image.width(), image.height()] != [background.width(), background.height()] {
         return Err(FlatFieldError::Size);
     }
-    let row_len = image.width() * 3;
-    let need = row_stride.checked_mul(image.height() - 1).and_then(|n| n.checked_add(row_len));
-    if row_stride < row_len || need.is_none_or(|need| pixels.len() < need) {
+    let need = span(image.width(), image.height(), 3, row_stride);
+    if need.map_or(true, |need| pixels.len() < need) {
         return Err(FlatFieldError::Output);
     }
     let limits = [image.sample().saturation(), background.sample().saturation()];

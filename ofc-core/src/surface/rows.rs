@@ -1,6 +1,6 @@
 //! Numbers of every inlier, written into the caller's rows.
 
-use crate::picture::{Image, Window, for_each_bit};
+use crate::picture::{Image, Window, for_each_bit, span};
 use core::fmt;
 
 /// The output buffer ends before the last row, or its rows are shorter than those of the picture.
@@ -30,10 +30,8 @@ pub(super) fn write<const N: usize>(
     out: &mut [f32],
     row_stride: usize,
 ) -> Result<(), TooShort> {
-    let row_len = image.width() * N;
-    let need =
-        row_stride.checked_mul(image.height() - 1).and_then(|n| n.checked_add(row_len)).ok_or(TooShort)?;
-    if row_stride < row_len || out.len() < need {
+    let need = span(image.width(), image.height(), N, row_stride).map_err(|_| TooShort)?;
+    if out.len() < need {
         return Err(TooShort);
     }
     image.for_each_window(|window| {

@@ -6,7 +6,7 @@
 
 use crate::color::ellipsoid::{Coefficients, quadratic_form};
 use crate::math::select::{kth_smallest, median_rank};
-use crate::picture::{Image, Usable, for_each_bit};
+use crate::picture::{Image, Usable, for_each_bit, span};
 use core::fmt;
 use libm::{expf, logf};
 
@@ -212,8 +212,6 @@ pub fn divide(
 
 /// Whether rows of so many values a pixel fit.
 fn fits(rows: &[f32], image: &Image, values: usize, stride: usize) -> Result<(), AlbedoError> {
-    let len = image.width() * values;
-    let need = stride.checked_mul(image.height() - 1).and_then(|start| start.checked_add(len));
-    let holds = stride >= len && need.is_some_and(|need| rows.len() >= need);
-    if holds { Ok(()) } else { Err(AlbedoError::Rows) }
+    let need = span(image.width(), image.height(), values, stride);
+    if need.is_ok_and(|need| rows.len() >= need) { Ok(()) } else { Err(AlbedoError::Rows) }
 }

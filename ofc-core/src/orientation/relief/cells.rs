@@ -2,7 +2,7 @@
 
 use super::grid::{Cell, Grid, Planes, around};
 use super::reference::Polynomial;
-use crate::picture::{Image, Usable, Window, for_each_bit};
+use crate::picture::{Image, Usable, WINDOW, Window, for_each_bit};
 
 /// A pixel whose channels are all below this share of the plane is a dark spot: a marker, a hole or dirt. A slope cannot make all
 /// of several lights so weak at once.
@@ -37,38 +37,41 @@ impl Selection<'_> {
     }
 }
 
-/// Averages the pixels that count in all pictures, of the one that `which` says, and says what the cells are. A cell with a dark spot
+/// A picture that is averaged, which of its pixels count, and where the averages go.
+pub(super) struct Source<'a, 'p, 'w> {
+    pub image: &'a Image<'a>,
+    pub selection: Selection<'a>,
+    pub planes: &'p mut Planes<'w>,
+    pub window: Window,
+}
+
+impl<'a, 'p, 'w> Source<'a, 'p, 'w> {
+    pub const fn new(image: &'a Image<'a>, selection: Selection<'a>, planes: &'p mut Planes<'w>) -> Self {
+        Self { image, selection, planes, window: Window::new() }
+    }
+}
+
+/// Averages each picture over the pixels that count in all of them, and says what the cells are. A cell with a dark spot
 /// in it, and those around it, which its blurred border reaches, are missing.
-pub(super) fn average(
-    pictures: &[(Image, Selection)],
-    which: usize,
-    grid: &Grid,
-    planes: &mut Planes,
-    states: &mut [u32],
-    masked_counts: &mut [u32],
-) {
-    for plane in planes.iter_mut() {
+pub(super) fn average(sources: &mut [Source], grid: &Grid, states: &mut [u32], masked_counts: &mut [u32]) {
+    for plane in sources.iter_mut().flat_map(|source| source.planes.iter_mut()) {
         plane.fill(0.0);
     }
     states.fill(0);
     masked_counts.fill(0);
-    let Some((first, _)) = pictures.first() else { return };
-    let mut window = Window::new();
+    let width = grid.width * grid.side;
     for y in 0..grid.height * grid.side {
-        for x in (0..first.width()).step_by(crate::picture::WINDOW) {
+        for x in (0..width).step_by(WINDOW) {
             let (mut used, mut masked, mut spots) = (u64::MAX, u64::MAX, 0);
-            for (image, selection) in pictures {
-                image.read(x, y, &mut window);
-                let (bits, dark) = selection.bits(&window, grid);
+            for Source { image, selection, window, .. } in sources.iter_mut() {
+                image.read(x, y, window);
+                let (bits, dark) = selection.bits(window, grid);
                 used &= bits;
                 spots |= dark;
                 masked &= window.masked;
             }
-            if let Some((image, _)) = pictures.get(which) {
-                image.read(x, y, &mut window);
-            }
             for_each_bit(masked, |i| {
-                if x + i >= grid.width * grid.side {
+                if x + i >= width {
                     return;
                 }
                 let cell = grid.cell(x + i, y);
@@ -77,7 +80,7 @@ pub(super) fn average(
                     *used += u32::from(is_used);
                     *masked = (*masked + 1) | if spots >> i & 1 == 1 { SPOT } else { 0 };
                 }
-                if is_used {
+                for Source { planes, window, .. } in sources.iter_mut().filter(|_| is_used) {
                     for (plane, value) in planes.iter_mut().zip(window.pixel(i)) {
                         if let Some(sum) = plane.get_mut(cell) {
                             *sum += value;
@@ -94,7 +97,7 @@ pub(super) fn average(
             around(grid, cell).any(|near| masked_counts.get(near).is_some_and(|count| count & SPOT != 0));
         let Some(state) = states.get_mut(cell) else { return };
         let used = *state;
-        for plane in planes.iter_mut() {
+        for plane in sources.iter_mut().flat_map(|source| source.planes.iter_mut()) {
             if let Some(sum) = plane.get_mut(cell) {
                 *sum /= used.max(1) as f32;
             }

@@ -1,6 +1,6 @@
 //! From a picture, and perhaps one of the plane alone, to W.
 
-use super::cells::{self, Selection};
+use super::cells::{self, Selection, Source};
 use super::circulation::{self, Least};
 use super::contact;
 use super::fill::fill;
@@ -195,16 +195,15 @@ impl Job<'_, '_> {
         let source_usable =
             if background.is_some() { Usable::below(source.sample().saturation()) } else { *usable };
         let all = Selection { usable: source_usable, plane: None };
-        cells::average(&[(*source, all)], 0, grid, plane, classes, other);
+        cells::average(&mut [Source::new(source, all, plane)], grid, classes, other);
         let polynomial = reference::fit(grid, plane, classes, scratch)?;
-        let of_image = || Selection { usable: *usable, plane: Some(&polynomial) };
+        let without_spots = |usable| Selection { usable, plane: Some(&polynomial) };
+        let of_image = Source::new(image, without_spots(*usable), color);
         match background {
-            None => cells::average(&[(**image, of_image())], 0, grid, color, classes, other),
+            None => cells::average(&mut [of_image], grid, classes, other),
             Some(background) => {
-                let of_background = || Selection { usable: source_usable, plane: Some(&polynomial) };
-                let pictures = || [(**image, of_image()), (**background, of_background())];
-                cells::average(&pictures(), 1, grid, plane, classes, other);
-                cells::average(&pictures(), 0, grid, color, classes, other);
+                let of_background = Source::new(background, without_spots(source_usable), plane);
+                cells::average(&mut [of_image, of_background], grid, classes, other);
             }
         }
         let known = classes.iter().filter(|state| **state == Cell::Known as u32).count();
