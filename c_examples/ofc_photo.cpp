@@ -56,17 +56,19 @@ int run(const Options &options)
     const auto relief = [&](const Result *ellipsoid) {
         Picture frame = undivided;
         frame.mask = picture.mask;
-        const auto solve_frame = [&] {
-            return solve_relief(frame, background ? &*background : nullptr, options.relief_params(), options.depth, truth);
-        };
-        ReliefResult found = solve_frame();
+        const Picture *const plane = background ? &*background : nullptr;
+        ReliefResult found = solve_relief(frame, plane, options.relief_params());
         if (!found.solved() && !picture.mask.empty()) {
             // A mask around the relief hides the plane that it rises from.
             frame.mask.release();
-            found = solve_frame();
-            found.restrict_to(picture.mask);
+            found = solve_relief(frame, plane, options.relief_params());
         }
         if (ellipsoid == nullptr || found.is_better_than(*ellipsoid)) {
+            if (found.solved()) {
+                complete(found, frame, plane, options.depth, truth);
+                if (frame.mask.empty() && !picture.mask.empty())
+                    found.restrict_to(picture.mask);
+            }
             write_relief(out.string(), frame, found, ellipsoid);
             if (ellipsoid != nullptr)
                 std::printf("%-10s %s\n", "ellipsoid",

@@ -137,6 +137,10 @@ template <class T, std::size_t Channels = 1> class Array {
 /// time may use it.
 class Workspace {
   public:
+    Workspace() = default;
+    /// Of so many bytes from the start.
+    explicit Workspace(std::size_t bytes) : words_(bytes / sizeof(std::uint64_t) + 1) {}
+
     /// At least so many bytes, aligned for any call and valid until the next call of get().
     void *get(std::size_t bytes)
     {
@@ -147,6 +151,9 @@ class Workspace {
         }
         return words_.data();
     }
+
+    /// The bytes that it has.
+    void *data() noexcept { return words_.data(); }
 
     /// How many bytes it has grown to.
     std::size_t bytes() const noexcept { return words_.size() * sizeof(std::uint64_t); }

@@ -1,6 +1,5 @@
 #include "common/reason.hpp"
 
-#include "common/workspace.hpp"
 
 #include <cstdio>
 
@@ -34,7 +33,7 @@ std::string reason_in_words(const ofc_solution &solution)
 
 void explain_refusal(const ofc_image &image, const ofc_solve_params &params, ofc_solution &solution)
 {
-    Workspace workspace(ofc_solve_workspace_size(image.width, image.height, &params));
+    ofc::Workspace workspace(ofc_solve_workspace_size(image.width, image.height, &params));
     solution = {};
     solution.reason_channel = -1;
     ofc_pixel_counts_compute(&image, &params, workspace.data(), workspace.bytes(), &solution.pixel_counts, &solution.reason);

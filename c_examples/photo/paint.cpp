@@ -1,6 +1,5 @@
 #include "photo/paint.hpp"
 
-#include "common/workspace.hpp"
 #include "photo/text.hpp"
 #include "photo/trust.hpp"
 
@@ -89,7 +88,7 @@ Paint paint_of(const Picture &picture, std::uint64_t seed)
     ofc_paint_params_default(&params);
     params.seed = seed;
     const ofc_image image = picture.view();
-    Workspace workspace(OFC_LARGER(ofc_paint_workspace_size(), ofc_paint_albedo_workspace_size(image.width, image.height)));
+    ofc::Workspace workspace(OFC_LARGER(ofc_paint_workspace_size(), ofc_paint_albedo_workspace_size(image.width, image.height)));
     paint.status = ofc_paint_estimate(&image, &params, workspace.data(), workspace.bytes(), &paint.estimate);
     cv::Mat albedo(picture.size(), CV_32F), pixels(picture.size(), CV_32FC3);
     if (paint.status >= 0 && ofc_paint_albedo(&image, &params, paint.estimate.coefficients, workspace.data(), workspace.bytes(),

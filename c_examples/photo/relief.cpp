@@ -1,7 +1,6 @@
 #include "photo/relief.hpp"
 
 #include "common/surface_view.hpp"
-#include "common/workspace.hpp"
 #include "photo/text.hpp"
 #include "photo/trust.hpp"
 
@@ -28,6 +27,11 @@ const char *scale_name(ofc_scale_source source)
 {
     static const char *const names[] = {"unknown", "the bend of the colors", "the ball's radius"};
     return names[source];
+}
+
+std::optional<ofc_image> view_of(const Picture *picture)
+{
+    return picture != nullptr ? std::make_optional(picture->view()) : std::nullopt;
 }
 
 // Shifts the depth so that the plane is at zero, in the median.
@@ -123,27 +127,32 @@ void ReliefResult::restrict_to(const cv::Mat &mask)
         surface.depth.setTo(std::nan(""), outside);
 }
 
-ReliefResult solve_relief(const Picture &picture, const Picture *background, const ofc_relief_params &params,
-                          const DepthOptions &depth, const cv::Mat &truth)
+ReliefResult solve_relief(const Picture &picture, const Picture *background, const ofc_relief_params &params)
 {
     const ofc_image image = picture.view();
-    const ofc_image below = background != nullptr ? background->view() : ofc_image{};
-    const ofc_image *const plane = background != nullptr ? &below : nullptr;
+    const std::optional<ofc_image> plane = view_of(background);
     ReliefResult result;
-    result.depth = depth;
     result.classes = cv::Mat::zeros(picture.size(), CV_8U);
+    ofc::Workspace workspace(ofc_relief_workspace_size(image.width, image.height));
+    result.status = ofc_relief_solve(&image, plane ? &*plane : nullptr, &params, workspace.data(), workspace.bytes(),
+                                     result.classes.data, &result.relief);
+    return result;
+}
+
+void complete(ReliefResult &result, const Picture &picture, const Picture *background, const DepthOptions &depth,
+              const cv::Mat &truth)
+{
+    const ofc_image image = picture.view();
+    const std::optional<ofc_image> plane = view_of(background);
     result.normals.create(picture.size(), CV_32FC3);
     result.uncertainty.create(picture.size(), CV_32F);
-    Workspace workspace(ofc_relief_workspace_size(image.width, image.height));
-    result.status = ofc_relief_solve(&image, plane, &params, workspace.data(), workspace.bytes(), result.classes.data,
-                                     &result.relief);
-    if (!result.solved())
-        return result;
-    result.status = ofc_relief_normals(&image, plane, &result.relief, result.classes.data, result.normals.ptr<float>(),
-                                       result.normals.step, result.uncertainty.ptr<float>(), result.uncertainty.step);
+    result.status = ofc_relief_normals(&image, plane ? &*plane : nullptr, &result.relief, result.classes.data,
+                                       result.normals.ptr<float>(), result.normals.step, result.uncertainty.ptr<float>(),
+                                       result.uncertainty.step);
     cv::patchNaNs(result.normals, 0);
     result.uncertainty *= degrees(1);
-    // Over the plane as well: it is what the relief rises from. Pixels without a color are bridged.
+    // Over the plane as well: it is what the relief rises from.
+    result.depth = depth;
     result.surface = integrate(result.normals, picture.mask, depth.params());
     if (result.surface.integrated())
         put_plane_at_zero(result.surface.depth, result.classes);
@@ -152,7 +161,6 @@ ReliefResult solve_relief(const Picture &picture, const Picture *background, con
         truth.copyTo(contact, result.classes == OFC_RELIEF_CONTACT);
         result.median_error_deg = median_angle_deg(result.normals, contact);
     }
-    return result;
 }
 
 const char *no_relief(const ReliefResult &result)

@@ -21,8 +21,11 @@ struct ReliefResult {
 };
 
 // Solves the picture as a relief on a plane. The background, a picture of the plane alone, may be null.
-ReliefResult solve_relief(const Picture &picture, const Picture *background, const ofc_relief_params &params,
-                          const DepthOptions &depth, const cv::Mat &truth);
+ReliefResult solve_relief(const Picture &picture, const Picture *background, const ofc_relief_params &params);
+
+// Adds the normals of a relief that was found, their uncertainty and depth. The truth may be empty.
+void complete(ReliefResult &result, const Picture &picture, const Picture *background, const DepthOptions &depth,
+              const cv::Mat &truth);
 
 // Why there is none, in words.
 const char *no_relief(const ReliefResult &result);

@@ -1,7 +1,6 @@
 #include "photo/solve.hpp"
 
 #include "common/reason.hpp"
-#include "common/workspace.hpp"
 #include "photo/trust.hpp"
 
 #include <chrono>
@@ -53,7 +52,7 @@ void add_uncertainty(const ofc_image &image, Result &result)
 std::optional<ofc_check_result> check(const ofc_image &image, const Result &result)
 {
     const ofc_depth_map depth = result.surface.view();
-    Workspace workspace(ofc_check_workspace_size(image.width, image.height));
+    ofc::Workspace workspace(ofc_check_workspace_size(image.width, image.height));
     ofc_check_result found;
     const ofc_status status = ofc_check(&image, &result.solution, result.surface.integrated() ? &depth : nullptr,
                                         workspace.data(), workspace.bytes(), &found);
@@ -71,7 +70,7 @@ Result solve(const Picture &picture, const ofc_solve_params &params, const Shado
     result.inliers = cv::Mat::zeros(picture.size(), CV_8U);
     result.normals = cv::Mat::zeros(picture.size(), CV_32FC3);
     const ofc_image image = picture.view();
-    Workspace workspace(ofc_solve_workspace_size(image.width, image.height, &result.params));
+    ofc::Workspace workspace(ofc_solve_workspace_size(image.width, image.height, &result.params));
     result.status = timed(result, "solve", [&] {
         return ofc_solve(&image, &result.params, workspace.data(), workspace.bytes(), result.inliers.data, &result.solution);
     });
@@ -95,7 +94,7 @@ void time_stages(const Picture &picture, Result &result)
 {
     const ofc_image image = picture.view();
     const ofc_solve_params &params = result.params;
-    Workspace workspace(ofc_solve_workspace_size(image.width, image.height, &params));
+    ofc::Workspace workspace(ofc_solve_workspace_size(image.width, image.height, &params));
     ofc_color_fit fit;
     ofc_location location;
     ofc_inlier_test first, both;

@@ -1,7 +1,6 @@
 #include "table1/experiment.hpp"
 
 #include "common/reason.hpp"
-#include "common/workspace.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +10,7 @@ namespace {
 
 ofc_status solve(const ofc_image &image, const ofc_solve_params &params, cv::Mat *inliers, ofc_solution &solution)
 {
-    Workspace workspace(ofc_solve_workspace_size(image.width, image.height, &params));
+    ofc::Workspace workspace(ofc_solve_workspace_size(image.width, image.height, &params));
     return ofc_solve(&image, &params, workspace.data(), workspace.bytes(), inliers ? inliers->data : nullptr, &solution);
 }
 
@@ -125,7 +124,7 @@ Experiment run_experiment(const Relief &relief, const ExperimentParams &wanted)
         explain_refusal(image, params, s);
     if (e.status != OFC_STATUS_OK)
         return e;
-    Workspace for_check(ofc_check_workspace_size(image.width, image.height));
+    ofc::Workspace for_check(ofc_check_workspace_size(image.width, image.height));
     ofc_check_result check;
     if (ofc_check(&image, &s, nullptr, for_check.data(), for_check.bytes(), &check) == OFC_STATUS_OK)
         std::copy_n(check.correlation, 3, e.correlation);
@@ -152,7 +151,7 @@ Experiment run_experiment(const Relief &relief, const ExperimentParams &wanted)
     ofc_annealing_params annealing;
     ofc_annealing_params_default(&annealing);
     annealing.seed = wanted.seed;
-    Workspace workspace(ofc_orthogonal_annealing_workspace_size(image.width, image.height, &annealing));
+    ofc::Workspace workspace(ofc_orthogonal_annealing_workspace_size(image.width, image.height, &annealing));
     ofc_orthogonal found;
     const ofc_status annealed = ofc_orthogonal_annealing(&image, &s.inlier_test, s.ellipsoid.root, correct.tilts.data(),
                                                          &annealing, workspace.data(), workspace.bytes(), &found);
