@@ -65,9 +65,10 @@ fn mistakes(text: &str, folder: &Path) -> Vec<String> {
 #[test]
 fn documents_agree_with_the_code() {
     let root = root();
-    let mut documents: Vec<_> = ["README.md", "CONTRIBUTING.md", "SECURITY.md", "c_examples/README.md"]
-        .map(|file| root.join(file))
-        .into();
+    let mut documents: Vec<_> =
+        ["README.md", "CONTRIBUTING.md", "SECURITY.md", "bindings/python/README.md", "c_examples/README.md"]
+            .map(|file| root.join(file))
+            .into();
     let docs = std::fs::read_dir(root.join("docs")).expect("docs");
     documents.extend(docs.map(|entry| entry.expect("an entry").path()).filter(|path| path.is_file()));
     assert!(documents.len() >= 6);

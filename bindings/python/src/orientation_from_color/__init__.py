@@ -1,0 +1,116 @@
+"""Orientation from color: surface normals from one RGB picture of a uniformly colored matte surface under unknown colored lights.
+
+    import orientation_from_color as ofc
+
+    solution = ofc.solve(rgb, mask)
+    normals = solution.normals()
+    depth = ofc.integrate(normals, solution.inliers)
+
+Arrays are NumPy's. x points right, y up and z toward the camera, row 0 is the top row, angles are in radians, and channels are
+red, green, blue. Pixel values are linear: no gamma. Calls let other threads run, and read arrays in place where their rows are
+packed.
+"""
+
+from ._native import ffi, lib
+from .depth import Depth, depth_normals, integrate
+from .enums import (
+    Convexity,
+    DepthMethod,
+    Evidence,
+    Fallback,
+    Fit,
+    NoRelief,
+    Norms,
+    OrientationMethod,
+    PaintVerdict,
+    Pass,
+    Reason,
+    ReliefClass,
+    Scale,
+    ShadowRejection,
+    Slants,
+    Status,
+    Tilt,
+    Weighting,
+)
+from .errors import Error, Refused
+from .flat import FlatField, flat_field
+from .paint import Paint, estimate_paint
+from .params import (
+    DepthParams,
+    LmedsParams,
+    PaintParams,
+    ReliefParams,
+    RenderParams,
+    SegmentParams,
+    SolveParams,
+    StreamParams,
+)
+from .picture import Picture
+from .plot import normal_map
+from .relief import Relief, solve_relief
+from .rendering import Rendering, render
+from .segmentation import Region, Segmentation, classify_patches, segment
+from .solution import Solution, normals_from_matrix, pixel_counts, solve
+from .stages import Check, Covariance, PixelCounts
+from .stream import Drift, Frame, Stream
+
+__version__: str = ffi.string(lib.ofc_version_string()).decode()
+
+__all__ = [
+    "Check",
+    "Convexity",
+    "Covariance",
+    "Depth",
+    "DepthMethod",
+    "DepthParams",
+    "Drift",
+    "Error",
+    "Evidence",
+    "Fallback",
+    "Fit",
+    "FlatField",
+    "Frame",
+    "LmedsParams",
+    "NoRelief",
+    "Norms",
+    "OrientationMethod",
+    "Paint",
+    "PaintParams",
+    "PaintVerdict",
+    "Pass",
+    "Picture",
+    "PixelCounts",
+    "Reason",
+    "Refused",
+    "Region",
+    "Relief",
+    "ReliefClass",
+    "ReliefParams",
+    "RenderParams",
+    "Rendering",
+    "Scale",
+    "SegmentParams",
+    "Segmentation",
+    "ShadowRejection",
+    "Slants",
+    "Solution",
+    "SolveParams",
+    "Status",
+    "Stream",
+    "StreamParams",
+    "Tilt",
+    "Weighting",
+    "classify_patches",
+    "depth_normals",
+    "estimate_paint",
+    "flat_field",
+    "integrate",
+    "normal_map",
+    "normals_from_matrix",
+    "pixel_counts",
+    "render",
+    "segment",
+    "solve",
+    "solve_relief",
+]

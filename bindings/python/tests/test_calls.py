@@ -1,0 +1,254 @@
+"""What each call is for, once."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import orientation_from_color as ofc
+from conftest import COLORS, LIGHTS, angles, dome
+
+mpl.use("Agg")
+
+
+def test_from_a_picture_to_normals_uncertainty_and_depth(scene: ofc.Rendering) -> None:
+    mask = (scene.normals != 0).any(axis=-1)
+    solution = ofc.solve(scene.pixels, mask)
+    errors = angles(solution.normals(), scene.normals)
+    assert np.median(errors) < 3
+    assert solution.inlier_count == np.count_nonzero(solution.inliers) > 0.7 * np.count_nonzero(mask)
+    sigma = solution.uncertainty()
+    assert (sigma[~solution.inliers] == np.float32(np.pi)).all()
+    assert 0 < np.degrees(np.median(sigma[solution.inliers])) < 15
+    assert solution.covariance().f.shape == (9, 9)
+    assert solution.matte_weight().max() <= 1
+    depth = ofc.integrate(solution.normals(), solution.inliers, params=ofc.DepthParams(pixel_pitch=0.1))
+    assert depth.converged
+    assert np.isnan(depth.depth[~solution.inliers]).all()
+    surface, _ = dome(90, 120)
+    both = np.isfinite(depth.depth)
+    assert np.corrcoef(depth.depth[both], surface[both])[0, 1] > 0.99
+    assert 0.05 < np.ptp(depth.depth[both]) / np.ptp(surface[both]) < 0.15
+    check = solution.check(depth=depth)
+    assert (check.correlation > 0.99).all()
+    assert check.has_turn
+    assert np.median(angles(depth.normals(), scene.normals)) < 4
+
+
+def test_slopes_are_as_good_as_normals(scene: ofc.Rendering) -> None:
+    n = scene.normals
+    with np.errstate(divide="ignore", invalid="ignore"):
+        p, q = -n[..., 0] / n[..., 2], -n[..., 1] / n[..., 2]
+    mask = n[..., 2] > 0
+    by_normals, by_slopes = ofc.integrate(n, mask), ofc.integrate(p=p, q=q, mask=mask)
+    assert np.nanmax(np.abs(by_normals.depth - by_slopes.depth)) < 0.05 * np.nanmax(by_normals.depth)
+    heavy = ofc.integrate(n, mask, weights=np.where(mask, 1, 0).astype(np.float32), prior=np.full(mask.shape, 5, np.float32))
+    assert np.nanmean(heavy.depth) == pytest.approx(5, abs=0.1)
+    with pytest.raises(ValueError, match="normals, or p and q"):
+        ofc.integrate(n, p=p, q=q)
+    with pytest.raises(ValueError, match="normals, or p and q"):
+        ofc.integrate(p=p)
+
+
+def test_a_refusal_has_a_reason_and_an_advice() -> None:
+    with pytest.raises(ofc.Refused) as flat:
+        ofc.solve(np.full((50, 50, 3), 7, np.uint8))
+    assert flat.value.reason is ofc.Reason.FLAT
+    assert "object that bends" in flat.value.advice
+    assert "try: take an object" in str(flat.value)
+    assert isinstance(flat.value.result, ofc.Solution)
+    assert "the surface is flat" in repr(flat.value.result)
+    with pytest.raises(ofc.Refused) as dark:
+        ofc.solve(np.zeros((50, 50, 3), np.uint8))
+    assert (dark.value.status, dark.value.reason) == (ofc.Status.DARK, ofc.Reason.DARK)
+    assert isinstance(dark.value.result, ofc.PixelCounts)
+    assert dark.value.result.dark == 2500
+    assert ofc.pixel_counts(np.zeros((50, 50, 3), np.uint8))[1] is ofc.Reason.DARK
+    again = pickle.loads(pickle.dumps(dark.value))
+    assert (str(again), again.reason) == (str(dark.value), dark.value.reason)
+    with pytest.raises(ofc.Error) as wrong:
+        ofc.solve(np.zeros((50, 50, 3), np.uint8), params=ofc.SolveParams(rank_threshold=2))
+    assert wrong.value.status is ofc.Status.INVALID_PARAMETER
+    assert not isinstance(wrong.value, ofc.Refused)
+
+
+def test_a_solution_is_pickled_without_its_picture(scene: ofc.Rendering) -> None:
+    solution = ofc.solve(scene.pixels)
+    for again in (pickle.loads(pickle.dumps(solution)), copy.deepcopy(solution)):
+        assert (again.f == solution.f).all()
+        assert (again.inliers == solution.inliers).all()
+        assert (again.normals(scene.pixels) == solution.normals()).all()
+        with pytest.raises(ValueError, match="left its picture behind"):
+            again.normals()
+
+
+def test_the_direct_method_knows_no_uncertainty(scene: ofc.Rendering) -> None:
+    solution = ofc.solve(scene.pixels, params=ofc.SolveParams(orientation_method=ofc.OrientationMethod.DIRECT))
+    assert "not known" in solution.trust()
+    with pytest.raises(ofc.Error) as error:
+        solution.uncertainty()
+    assert error.value.status is ofc.Status.NO_COVARIANCE
+    assert len(solution.plot().axes) == 5
+
+
+def test_hollow_is_the_twin(scene: ofc.Rendering) -> None:
+    convex = ofc.solve(scene.pixels)
+    hollow = ofc.solve(scene.pixels, params=ofc.SolveParams(convexity=ofc.Convexity.HOLLOW))
+    assert np.allclose(hollow.f[:, :2], -convex.f[:, :2])
+
+
+def test_normals_by_any_matrix(scene: ofc.Rendering) -> None:
+    solution = ofc.solve(scene.pixels)
+    normals = ofc.normals_from_matrix(scene.pixels, solution.orientation.f_inverse, inliers_of=solution)
+    assert (normals == solution.normals()).all()
+    raw = ofc.normals_from_matrix(scene.pixels, solution.orientation.f_inverse, inliers_of=solution, unit=False)
+    assert not (raw == normals).all()
+    with pytest.raises(ValueError, match=r"\(3, 3\)"):
+        ofc.normals_from_matrix(scene.pixels, np.eye(2))
+
+
+def test_a_flat_field_makes_even_what_was_not(scene: ofc.Rendering) -> None:
+    fall_off = np.linspace(0.5, 1, 120)[None, :, None]
+    uneven, background = (scene.pixels * fall_off).astype(np.float32), (200 * fall_off * np.ones((90, 1, 3))).astype(np.float32)
+    even = ofc.flat_field(uneven, background)
+    known = (scene.pixels > 40).all(axis=-1)
+    ratio = even.pixels[known] / scene.pixels[known]
+    assert ratio.std() / ratio.mean() < 0.001
+    assert even.used > 0
+    with pytest.raises(ofc.Error):
+        ofc.flat_field(uneven, background[1:])
+
+
+def test_uneven_paint_is_divided_out() -> None:
+    depth, mask = dome(180, 240)
+    directions = LIGHTS / np.linalg.norm(LIGHTS, axis=1, keepdims=True)
+    scene = ofc.render(depth, directions, COLORS, mask, dtype=np.float32, params=ofc.RenderParams(peak=200, noise=0.3))
+    y, x = np.mgrid[0:180, 0:240]
+    albedo = (1 + 0.25 * (x - 120) / 120 + 0.15 * (y - 90) / 90)[..., None].astype(np.float32)
+    painted = np.asarray(scene.pixels) * albedo
+    paint = ofc.estimate_paint(painted, mask)
+    assert paint.verdict in (ofc.PaintVerdict.SMOOTH, ofc.PaintVerdict.ROUGH)
+    known = np.isfinite(paint.albedo())
+    assert np.corrcoef(paint.albedo()[known], albedo[..., 0][known])[0, 1] > 0.8
+    even = ofc.solve(paint.divide(), mask)
+    assert np.median(angles(even.normals(), scene.normals)) < 6
+    assert len(paint.plot().axes) == 4
+    with pytest.raises(ofc.Refused) as gray:
+        ofc.estimate_paint(np.repeat(painted[..., :1], 3, axis=-1), mask)
+    assert gray.value.status > 0
+
+
+def test_a_relief_on_a_plane() -> None:
+    # A ball of radius 40 pixels in a gel that comes up in a parabola around it.
+    y, x = np.mgrid[0:180, 0:240]
+    d, edge, skirt = np.hypot(x - 130.5, y - 80.5), 26.0, 12.0
+    steepest = edge / np.sqrt(40**2 - edge**2)
+    inside = np.sqrt(np.maximum(40.0**2 - d**2, 0)) - np.sqrt(40**2 - edge**2) + steepest * skirt / 2
+    outside = steepest * np.maximum(skirt - (d - edge), 0) ** 2 / (2 * skirt)
+    depth = np.where(d < edge, inside, outside).astype(np.float32)
+    directions = LIGHTS / np.linalg.norm(LIGHTS, axis=1, keepdims=True)
+    scene = ofc.render(depth, directions, COLORS, params=ofc.RenderParams(noise=0.7, peak=200, cast_shadows=False))
+    gray = scene.scale * ofc.render(0 * depth, directions, COLORS).largest_modulus
+    untouched = ofc.render(0 * depth, directions, COLORS, params=ofc.RenderParams(noise=0.7, peak=gray, seed=1))
+    relief = ofc.solve_relief(scene.pixels, params=ofc.ReliefParams(ball_radius=40))
+    contact = relief.classes == ofc.ReliefClass.CONTACT
+    assert contact[80, 150]
+    assert relief.classes[0, 0] == ofc.ReliefClass.PLANE
+    normals = relief.normals()
+    assert np.nanmedian(angles(normals * contact[..., None], scene.normals)) < 10
+    assert np.nanmax(relief.uncertainty()) > 0
+    assert relief.scale_source is ofc.Scale.BALL
+    assert "contact" in repr(relief)
+    assert len(relief.plot().axes) == 5
+    known = ofc.solve_relief(scene.pixels, untouched.pixels, params=ofc.ReliefParams(ball_radius=40))
+    assert known.has_background
+    assert np.isfinite(known.normals()).any()
+    with pytest.raises(ofc.Refused, match="nothing differs") as flat:
+        ofc.solve_relief(untouched.pixels)
+    assert isinstance(flat.value.result, ofc.Relief)
+    assert flat.value.result.reason is ofc.NoRelief.UNTOUCHED
+
+
+def test_two_materials_are_two_regions() -> None:
+    depth, mask = dome(120, 120)
+    directions = LIGHTS / np.linalg.norm(LIGHTS, axis=1, keepdims=True)
+    one = ofc.render(depth, directions, COLORS, mask).pixels
+    other = ofc.render(depth, directions, COLORS[:, ::-1] * [0.4, 1, 0.7], mask).pixels
+    both = np.concatenate([one, other], axis=1)
+    found = ofc.segment(both)
+    assert len(found.regions) >= 2
+    assert found.labels[60, 60] != found.labels[60, 180]
+    assert found.regions[0].pixel_count == np.count_nonzero(found.labels == found.regions[0].label)
+    assert "region 1" in repr(found)
+    assert len(found.plot().axes) == 1
+    light, surface = ofc.classify_patches(one, mask, side=16, noise=0.5)
+    assert light.shape == surface.shape == (8, 8)
+    assert light[4, 4] == surface[4, 4] == 3
+    with pytest.raises(ofc.Error):
+        ofc.classify_patches(one, side=0, noise=0.5)
+
+
+def test_a_stream_finds_the_same_and_follows(scene: ofc.Rendering) -> None:
+    stream = ofc.Stream(120, 90)
+    frames = [stream.frame(scene.pixels) for _ in range(4)]
+    assert frames[0].was is ofc.Pass.COLORS
+    assert frames[0].normals is None
+    assert frames[-1].was is ofc.Pass.REFINE
+    assert frames[-1].normals is not None
+    assert np.median(angles(frames[-1].normals, scene.normals)) < 4
+    assert stream.drift().refined
+    solution = stream.solution(scene.pixels)
+    assert (solution.normals() == frames[-1].normals).all()
+    row = scene.pixels[45:46]
+    assert (stream.normals_row(row) == frames[-1].normals[45]).all()
+    packed = np.rint(255 * (frames[-1].normals[45].astype(np.float64) + 1) / 2)
+    flags = stream.inliers_row(row)
+    assert (flags == (frames[-1].normals[45] != 0).any(axis=-1)).all()
+    assert np.abs(stream.normals_row_packed(row)[flags] - packed[flags]).max() <= 1
+    planes = [np.ascontiguousarray(scene.pixels[..., c]) for c in range(3)]
+    assert stream.frame(planes).normals is not None
+    black = stream.frame(np.zeros_like(scene.pixels))
+    assert black.status is not ofc.Status.OK
+    assert black.normals is None
+    stream.restart()
+    assert stream.begin() is ofc.Pass.COLORS
+    stream.row(0, row)
+    with pytest.raises(ofc.Error) as error:
+        stream.row(7, row)
+    assert error.value.status is ofc.Status.ROW_ORDER
+    with pytest.raises(ofc.Error):
+        stream.end()
+    with pytest.raises(ValueError, match="119"):
+        stream.normals_row(row[:, :119])
+    with pytest.raises(ValueError, match="frames have"):
+        stream.frame(scene.pixels[1:])
+    with pytest.raises(ValueError, match="dtype"):
+        ofc.Stream(120, 90, np.int64)
+
+
+def test_lights_and_surfaces_that_do_not_fit_are_refused() -> None:
+    depth = np.zeros((5, 5), np.float32)
+    with pytest.raises(ValueError, match="lights, 3"):
+        ofc.render(depth, LIGHTS, COLORS[:2])
+    with pytest.raises(ValueError, match="dtype"):
+        ofc.render(depth, LIGHTS, COLORS, dtype=np.int8)
+    with pytest.raises(ofc.Error):
+        ofc.render(depth * np.nan, LIGHTS / np.linalg.norm(LIGHTS, axis=1, keepdims=True), COLORS)
+
+
+def test_results_show_themselves(scene: ofc.Rendering) -> None:
+    solution = ofc.solve(scene.pixels)
+    depth = ofc.integrate(solution.normals())
+    assert "inliers" in repr(solution)
+    assert repr(solution) != repr(depth)
+    assert solution._repr_html_().startswith("<table>")
+    assert "pixels" in depth._repr_html_()
+    assert repr(ofc.Picture(scene.pixels, scene.normals[..., 2] > 0)) == "<Picture 120 x 90, RGB of uint8, masked>"
+    for figure in (solution.plot(), depth.plot(), scene.plot()):
+        assert figure.axes
+    assert ofc.normal_map(scene.normals)[45, 60].tolist() == pytest.approx([127, 127, 255], abs=2)
+    assert (ofc.normal_map(scene.normals)[0, 0] == 0).all()
