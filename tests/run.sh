@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# All tests, and how long each kind of them took. run.sh --fast leaves out Python, the emulated boards, the other
-# targets, the examples and the newcomers. Installs the Debian packages it lacks (.ci/packages.sh names them) as root or with sudo. Can be run again.
+# All tests, and how long each kind of them took. run.sh --fast leaves out Python, the documentation, the emulated
+# boards, the other targets, the examples and the newcomers. Installs the Debian packages it lacks (.ci/packages.sh names them) as root or with sudo. Can be run again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case ${1-} in
@@ -25,7 +25,7 @@ step() {
 }
 
 step "scripts"
-shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/determinism/*.sh tests/newcomer/run.sh ofc-ffi/package/*.sh bindings/python/*.sh
+shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/determinism/*.sh tests/newcomer/run.sh ofc-ffi/package/*.sh bindings/python/*.sh docs/*.sh
 
 step "format and lints"
 cargo fmt --all --check
@@ -46,12 +46,15 @@ ctest --test-dir target/ctest --output-on-failure
 
 if [ -n "$fast" ]; then
     step
-    echo "the fast tests passed in $SECONDS s; Python, firmware, other targets, examples and newcomers were left out"
+    echo "the fast tests passed in $SECONDS s; Python, documentation, firmware, other targets, examples and newcomers were left out"
     exit
 fi
 
 step "Python"
 bindings/python/test.sh
+
+step "documentation"
+docs/build.sh
 
 step "firmware"
 ./c_examples/firmware/run.sh

@@ -1,4 +1,4 @@
-"""Orientation from color: surface normals from one RGB picture of a uniformly colored matte surface under unknown colored lights.
+"""Orientation from color: surface normals from one RGB picture of a uniformly colored matte surface under unknown colored lights::
 
     import orientation_from_color as ofc
 

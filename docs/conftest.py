@@ -1,0 +1,75 @@
+"""The guide's programs run: Python in one namespace a page, C through a compiler, commands of the shell in a folder with pictures."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import cv2
+import matplotlib
+import numpy as np
+import pytest
+from sybil import Sybil
+from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
+
+import orientation_from_color as ofc
+
+INCLUDE = Path(__file__).parents[1] / "include"
+matplotlib.use("Agg")
+
+
+def evaluate_c(example):
+    """Strictly, but not linked: what the board has is the reader's."""
+    command = ["gcc", "-xc", "-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", f"-I{INCLUDE}", "-c", "-o", os.devnull, "-"]
+    subprocess.run(command, input=example.parsed.encode(), check=True)
+
+
+def evaluate_sh(example):
+    """With the python that runs this."""
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    subprocess.run(["bash", "-eu", "-c", example.parsed], env={**os.environ, "PATH": path}, check=True)
+
+
+@pytest.fixture(scope="module")
+def pictures(tmp_path_factory):
+    """photo.png with its mask.png, and press.png of a ball of 40 pixels with untouched.png, where the guide's programs run."""
+    folder = tmp_path_factory.mktemp("guide")
+    lights = np.array([[-0.45, 0.4, 0.8], [0.5, 0.3, 0.81], [0.05, -0.6, 0.8]])
+    lights /= np.linalg.norm(lights, axis=1, keepdims=True)
+    colors = np.array([[1.0, 0.15, 0.1], [0.2, 0.9, 0.1], [0.1, 0.2, 1.0]])
+
+    y, x = np.mgrid[0:300, 0:400]
+    u, v = (x - 199.5) / 180, (y - 149.5) / 135
+    shape = 110 * np.sqrt(np.maximum(1 - u * u - v * v, 0)) + 4 * np.cos(6 * u) * np.cos(5 * v)
+    mask = u * u + v * v < 0.95
+    scene = ofc.render(shape.astype(np.float32), lights, colors, mask, params=ofc.RenderParams(noise=0.5, peak=230))
+    cv2.imwrite(str(folder / "photo.png"), scene.pixels[..., ::-1])
+    cv2.imwrite(str(folder / "mask.png"), np.where(mask, 255, 0).astype(np.uint8))
+
+    y, x = np.mgrid[0:180, 0:240]
+    d, edge, skirt = np.hypot(x - 130.5, y - 80.5), 26.0, 12.0
+    steepest = edge / np.sqrt(40**2 - edge**2)
+    inside = np.sqrt(np.maximum(40.0**2 - d**2, 0)) - np.sqrt(40**2 - edge**2) + steepest * skirt / 2
+    outside = steepest * np.maximum(skirt - (d - edge), 0) ** 2 / (2 * skirt)
+    gel = np.where(d < edge, inside, outside).astype(np.float32)
+    press = ofc.render(gel, lights, colors, params=ofc.RenderParams(noise=0.7, peak=200, cast_shadows=False))
+    peak = press.scale * ofc.render(0 * gel, lights, colors).largest_modulus
+    untouched = ofc.render(0 * gel, lights, colors, params=ofc.RenderParams(noise=0.7, peak=peak, seed=1))
+    for name, rendering in (("press", press), ("untouched", untouched)):
+        cv2.imwrite(str(folder / f"{name}.png"), rendering.pixels[..., ::-1])
+
+    before = Path.cwd()
+    os.chdir(folder)
+    yield folder
+    os.chdir(before)
+
+
+pytest_collect_file = Sybil(
+    parsers=[
+        PythonCodeBlockParser(),
+        CodeBlockParser(language="c", evaluator=evaluate_c),
+        CodeBlockParser(language="sh", evaluator=evaluate_sh),
+    ],
+    pattern="guide/*.md",
+    fixtures=["pictures"],
+).pytest()
