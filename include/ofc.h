@@ -47,7 +47,7 @@
 /// - NaN: pixels that are NaN or infinite are left out and counted. Parameters that are not finite are refused. With
 ///   OFC_STATUS_OK an output is finite, but for infinities that its documentation names. The only NaNs in outputs say
 ///   "not known" or "no value here": in ofc_confidence, ofc_check_result, ofc_stream_drift, a covariance, ofc_paint,
-///   ofc_slant_curve_sample(), ofc_depth_integrate(), ofc_flat_field(), ofc_relief_normals(), ofc_relief,
+///   ofc_slant_curve_sample(), ofc_depth_integrate(), ofc_flat_field(), ofc_relief_normals(), ofc_relief, ofc_rig_normals(),
 ///   ofc_paint_albedo() and ofc_paint_divide(). Their bits are 0x7ff8000000000000 and 0x7fc00000 on every target.
 /// - Equations and sections are numbered as in M. S. Drew, "Direct Solution of Orientation-from-Color Problem using a
 ///   Modification of Pentland's Light Source Direction Estimator". The direct method is the method of that paper.
@@ -236,6 +236,8 @@ const char *ofc_status_message(ofc_status status);
 /// Colors and normals span three dimensions, but by hardly more than the noise, or than what does not obey the model: C
 /// is not determined. `reason` of the solution says what it comes from.
 #define OFC_STATUS_UNDETERMINED 9
+/// The slopes and depths of a rig are right up to a factor: nothing says what it is.
+#define OFC_STATUS_SCALE_UNKNOWN 10
 #define OFC_STATUS_NULL_POINTER (-10)     ///< A pointer that must not be NULL is NULL.
 #define OFC_STATUS_MISALIGNED (-11)       ///< A pointer or stride is not aligned for its type, or for a workspace.
 #define OFC_STATUS_OVERLAP (-12)          ///< An output overlaps an input, the workspace or another output.
@@ -1739,6 +1741,7 @@ typedef int32_t ofc_scale_source;
 #define OFC_SCALE_UNKNOWN 0 ///< It is unknown: slopes and depths are right up to a factor, and a usual one is taken.
 #define OFC_SCALE_COLORS 1  ///< From the bend of the colors of the inner contact.
 #define OFC_SCALE_BALL 2    ///< From the radius of the ball that was given.
+#define OFC_SCALE_GIVEN 3   ///< It was set, by ofc_rig_set_scale().
 
 /// Why a picture shows no relief on a plane: one of OFC_NO_RELIEF_*, whose numbers are never reused; 0 where it shows one.
 typedef int32_t ofc_no_relief;
@@ -1797,8 +1800,10 @@ typedef struct ofc_relief {
     /// The share of the normals' variance by which they disagree with the ellipsoid of the contact's colors; NaN where the colors have no
     /// ellipsoid.
     double disagreement;
-    double tilt;                   ///< The root mean square of the sines of the contact's slants.
-    double expected_error;         ///< The expected median error of the normals in the contact, in radians.
+    double tilt;           ///< The root mean square of the sines of the contact's slants.
+    double expected_error; ///< The expected median error of the normals in the contact, in radians.
+    /// The level of saturation of ofc_relief_params, which ofc_relief_normals() keeps to; zero stands for none that was given.
+    double saturation;
     ofc_scale_source scale_source; ///< Where the scale comes from, one of OFC_SCALE_*.
     int32_t has_background;        ///< 1 where a picture of the plane was given, 0 otherwise.
     ofc_no_relief reason;          ///< Why there is no relief, one of OFC_NO_RELIEF_*; 0 where there is one.
@@ -1855,6 +1860,173 @@ ofc_status ofc_relief_solve(const ofc_image *image, const ofc_image *background,
 ofc_status ofc_relief_normals(const ofc_image *image, const ofc_image *background, const ofc_relief *relief,
                               const ofc_relief_class *classes, float *normals, size_t normals_stride_bytes,
                               float *uncertainty, size_t uncertainty_stride_bytes);
+
+/* ---- A rig: many frames of one camera, lights and surface, as those of a tactile sensor ------------------------- */
+
+/// What would make a rig's model better, most: one of OFC_RIG_ADVICE_*.
+typedef int32_t ofc_rig_advice;
+
+#define OFC_RIG_ADVICE_NONE 0     ///< Nothing that is known.
+#define OFC_RIG_ADVICE_CONTACTS 1 ///< More contacts, of things that are round rather than long.
+#define OFC_RIG_ADVICE_SCALE 2    ///< A ball of known radius, or the scale.
+#define OFC_RIG_ADVICE_REGION 3   ///< Contacts in the part of the frame that has none: `region` of the model.
+
+/// What frames without labels say of a rig: sums, below 1 KiB for any number of frames. Made by ofc_rig_init(); plain numbers, which
+/// may be copied.
+typedef struct ofc_rig {
+    double circulation[36]; ///< Sums of squared circulations around windows, 6 x 6.
+    double energy[9];       ///< Sums of the energy of the relative colors, 3 x 3.
+    /// Sums of the relative colors times how far a cell is from the middle of its contact, 2 x 3: which way is out.
+    double outward[6];
+    double contact[9];  ///< Sums of the mean squares and products of the relative colors in the contacts, 3 x 3.
+    double bend[9];     ///< The weighted sum of these over the squared tilts that the bend of the colors gives, 3 x 3.
+    double bend_weight; ///< The sum of these weights: the reciprocal variance of the scale's logarithm.
+    double noise[3];    ///< Sums of the squared noise of each channel of a cell.
+    double plane[45];   ///< The sum of the polynomials of the plane, as in ofc_relief.
+    /// The scale that was set, as the Frobenius norm of the constant terms of the slopes; 0 where none was.
+    double scale;
+    double scale_deviation; ///< The standard deviation of its logarithm.
+    uint32_t coverage[9];   ///< Cells of contact in each ninth of the frame, row by row from the top left.
+    int32_t width;          ///< Width of the frames.
+    int32_t height;         ///< Height of the frames.
+    uint32_t frames;        ///< How many frames with a contact were added.
+} ofc_rig;
+
+/// What balls of known radius say of a rig: sums, below 13 KiB for any number of balls. Made by ofc_rig_init(); plain numbers, which may be
+/// copied.
+typedef struct ofc_rig_balls {
+    double products[1485]; ///< Sums of the covariances of the 54 terms, the lower triangle row by row.
+    double sides[108];     ///< Sums of the covariances of the terms and both slopes, 2 x 54.
+    double squares;        ///< The sum of the variances of both slopes.
+    uint32_t count;        ///< How many balls were added.
+    uint32_t centers;      ///< How many of them had a known center.
+} ofc_rig_balls;
+
+/// A solved rig: what turns the colors of any of its frames into normals. Made by ofc_rig_solve().
+typedef struct ofc_rig_model {
+    /// W, 2 x 54 and row-major: (n1, n2) = W phi. With delta the color of a pixel divided by that of the plane, less 1, phi is delta times
+    /// each of 1, x, y, x^2, xy, y^2, three terms after three, and then the products rr, rg, rb, gg, gb, bb of delta times each of them. x goes
+    /// from -1 to 1 across the frame and y from -1 to 1 down. What is beyond `terms` is zero.
+    double slopes[108];
+    /// The color of the plane, as in ofc_relief; where frames have a background it tells dark spots only.
+    double plane[45];
+    double noise[3]; ///< The standard deviation of each channel of a cell of the plane, relative to its color.
+    /// The mean squared circulation that a constant W leaves in all frames, relative to the energy of the slopes.
+    double circulation;
+    /// The circulation relative to that of the second best W: near 1 where the frames do not determine it.
+    double circulation_ratio;
+    /// The correlation between the slopes and how far they are from the middle of their contacts: above 0.5 for things that are pressed in.
+    double outward;
+    double scale_deviation; ///< The standard deviation of the logarithm of the scale: 0.1 stands for 10 %.
+    /// The share of the slopes' variance that W misses: of the balls where there are some, otherwise the circulation.
+    double disagreement;
+    double tilt;                   ///< The root mean square of the sines of the contacts' slants.
+    double expected_error;         ///< The expected median error of the normals in a contact, in radians.
+    double saturation;             ///< The level of saturation; zero stands for none that was given.
+    int32_t terms;                 ///< How many terms W has: 3, 18 or 54.
+    ofc_scale_source scale_source; ///< Where the scale comes from, one of OFC_SCALE_*.
+    ofc_rig_advice advice;         ///< What would help most, one of OFC_RIG_ADVICE_*.
+    int32_t region;  ///< The ninth of the frame that has fewest contacts: 0 to 8, row by row from the top left.
+    uint32_t frames; ///< How many frames it was made of.
+    uint32_t balls;  ///< How many balls it was made of.
+    int32_t width;   ///< Width of the frames.
+    int32_t height;  ///< Height of the frames.
+} ofc_rig_model;
+
+/// Begins a rig for frames of this size.
+/// @param width,height  Size of the frames, as for ofc_relief_workspace_size().
+/// @param rig  Output: the rig without frames.
+/// @param balls  Output: sums without balls; NULL where no ball will be added.
+/// @return OFC_STATUS_OK; OFC_STATUS_EMPTY for frames that are too small; OFC_STATUS_TOO_LARGE; an argument status.
+ofc_status ofc_rig_init(int32_t width, int32_t height, ofc_rig *rig, ofc_rig_balls *balls);
+
+/// Adds a frame to a rig, and to `balls` where a ball of known radius is pressed in.
+///
+/// A frame without a contact, or whose contact is not one of a relief, adds nothing. Markers and other spots that are dark in all
+/// channels are left out.
+/// @param rig  The rig; changed with OFC_STATUS_OK alone.
+/// @param balls  The sums over balls; changed with OFC_STATUS_OK alone. NULL unless `params` has a ball's radius.
+/// @param image  The frame.
+/// @param background  A frame of the same rig without a contact; NULL to take the plane from the frame itself.
+/// @param params  `saturation`, `seed`, and `ball_radius`: the radius in pixels of the one ball that is pressed in, or 0. The convexity is
+///     not used.
+/// @param center  Where the ball's center is: x and y in pixels, y downward, from the middle of the top left pixel. NULL where that is not
+///     known, or there is no ball.
+/// @param workspace  ofc_relief_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param classes  Output: width x height bytes, rows without gaps: one of OFC_RELIEF_* for each pixel. NULL where they are not wanted.
+/// @param no_relief  Output: why the frame adds nothing, one of OFC_NO_RELIEF_*, and 0 where it adds something. NULL where that is not
+///     wanted.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_RELIEF where the frame adds nothing, with the reason; OFC_STATUS_TOO_FEW_PIXELS; an argument status,
+///     OFC_STATUS_INVALID_PARAMETER for a frame of another size and for a ball without `balls`.
+///
+/// Stack: below 16 KiB. Reference: docs/rig.md.
+ofc_status ofc_rig_add(ofc_rig *rig, ofc_rig_balls *balls, const ofc_image *image, const ofc_image *background,
+                       const ofc_relief_params *params, const double *center, void *workspace, size_t workspace_bytes,
+                       ofc_relief_class *classes, ofc_no_relief *no_relief);
+
+/// Adds the frames and the balls of another rig of the same sensor. A scale that was set there counts where none was set here.
+/// @param rig  The rig; changed.
+/// @param balls  Its balls, changed; NULL where there are none, and `other_balls` is NULL.
+/// @param other  The other rig.
+/// @param other_balls  Its balls; NULL where there are none.
+/// @return OFC_STATUS_OK; an argument status, OFC_STATUS_INVALID_PARAMETER for frames of another size.
+ofc_status ofc_rig_merge(ofc_rig *rig, ofc_rig_balls *balls, const ofc_rig *other, const ofc_rig_balls *other_balls);
+
+/// Sets the scale of a rig from something whose height is known: `factor` is the true height over the one that `model` gave it. Where balls are
+/// used it does not count.
+/// @param rig  The rig; changed.
+/// @param model  What ofc_rig_solve() made of it.
+/// @param factor  By how much the slopes of the model are too flat, positive.
+/// @param deviation  The standard deviation of its logarithm: 0.1 stands for 10 %. Not negative.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; an argument status.
+ofc_status ofc_rig_set_scale(ofc_rig *rig, const ofc_rig_model *model, double factor, double deviation);
+
+/// Solves a rig.
+///
+/// Without balls W is constant over the frame, and its scale is the one that was set, or that of the bend of the colors where these bend enough.
+/// With balls it varies over the frame, held to what all frames say where they say little; ten balls whose centers are known give products of
+/// colors as well.
+/// @param rig  The rig.
+/// @param balls  Its balls; NULL to use none.
+/// @param params  `saturation` for the frames to come, and `convexity` as in ofc_relief_params.
+/// @param model  Output: the model.
+/// @return OFC_STATUS_OK; OFC_STATUS_SCALE_UNKNOWN with a model whose slopes and depths are right up to a factor, for which a usual one stands
+///     in; OFC_STATUS_NO_RELIEF, with `model` untouched, where no frame was added or the frames contradict each other;
+///     OFC_STATUS_UNDETERMINED, with `model` untouched, where more contacts are needed; an argument status.
+///
+/// Stack: below 44 KiB. Reference: docs/rig.md.
+ofc_status ofc_rig_solve(const ofc_rig *rig, const ofc_rig_balls *balls, const ofc_relief_params *params,
+                         ofc_rig_model *model);
+
+/// Says what each pixel of a frame is part of: the plane, the contact, its skirt. A frame without a contact is all plane.
+/// @param model  The solved rig.
+/// @param image  The frame.
+/// @param background  A frame of the same rig without a contact, as it is now; NULL to take the plane that the model has.
+/// @param workspace  ofc_relief_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param classes  Output: width x height bytes, rows without gaps: one of OFC_RELIEF_* for each pixel.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_TOO_FEW_PIXELS; an argument status, OFC_STATUS_INVALID_PARAMETER for a frame of
+///     another size.
+///
+/// Stack: below 16 KiB.
+ofc_status ofc_rig_classify(const ofc_rig_model *model, const ofc_image *image, const ofc_image *background,
+                            void *workspace, size_t workspace_bytes, ofc_relief_class *classes);
+
+/// Computes the unit normals of a frame, and how sure each of them is.
+/// @param model  The solved rig.
+/// @param image  The frame.
+/// @param background  As for ofc_rig_classify().
+/// @param classes  Its classes, width x height bytes.
+/// @param normals  Output: height rows of width (n1, n2, n3) floats: (0, 0, 1) on the plane, NaN where there is no usable color.
+/// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4.
+/// @param uncertainty  Output: height rows of width floats, the standard deviation of the angle in radians: 0 on the plane, NaN where
+///     there is no normal. NULL where it is not wanted.
+/// @param uncertainty_stride_bytes  Bytes from one row to the next, a multiple of 4; not read where `uncertainty` is NULL.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; an argument status, OFC_STATUS_INVALID_PARAMETER for a frame of another size.
+ofc_status ofc_rig_normals(const ofc_rig_model *model, const ofc_image *image, const ofc_image *background,
+                           const ofc_relief_class *classes, float *normals, size_t normals_stride_bytes,
+                           float *uncertainty, size_t uncertainty_stride_bytes);
 
 /* ---- Segmentation, of pictures with several materials or light environments ------------------------------------- */
 

@@ -25,7 +25,7 @@ cv::Mat class_picture(const cv::Mat &classes)
 
 const char *scale_name(ofc_scale_source source)
 {
-    static const char *const names[] = {"unknown", "the bend of the colors", "the ball's radius"};
+    static const char *const names[] = {"unknown", "the bend of the colors", "the ball's radius", "what was set"};
     return names[source];
 }
 

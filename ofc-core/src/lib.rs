@@ -121,6 +121,7 @@ pub mod surface;
 pub mod render;
 
 pub mod check;
+pub mod rig;
 pub mod solve;
 pub mod stream;
 

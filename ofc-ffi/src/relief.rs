@@ -13,11 +13,14 @@ pub const OFC_SCALE_UNKNOWN: i32 = 0;
 pub const OFC_SCALE_COLORS: i32 = 1;
 /// From the radius of the ball that was given.
 pub const OFC_SCALE_BALL: i32 = 2;
+/// It was set, by ofc_rig_set_scale().
+pub const OFC_SCALE_GIVEN: i32 = 3;
 
 constants!(ScaleSource = {
     Unknown: OFC_SCALE_UNKNOWN,
     Colors: OFC_SCALE_COLORS,
     Ball: OFC_SCALE_BALL,
+    Given: OFC_SCALE_GIVEN,
 });
 
 /// Why a picture shows no relief on a plane: one of OFC_NO_RELIEF_*, whose numbers are never reused; 0 where it shows one.
@@ -104,6 +107,8 @@ pub struct ofc_relief {
     pub tilt: f64,
     /// The expected median error of the normals in the contact, in radians.
     pub expected_error: f64,
+    /// The level of saturation of ofc_relief_params, which ofc_relief_normals() keeps to; zero stands for none that was given.
+    pub saturation: f64,
     /// Where the scale comes from, one of OFC_SCALE_*.
     pub scale_source: ofc_scale_source,
     /// 1 where a picture of the plane was given, 0 otherwise.
@@ -138,6 +143,7 @@ const NO_RELIEF: ofc_relief = ofc_relief {
     disagreement: 0.0,
     tilt: 0.0,
     expected_error: 0.0,
+    saturation: 0.0,
     scale_source: OFC_SCALE_UNKNOWN,
     has_background: 0,
     reason: 0,
@@ -184,6 +190,7 @@ fn to_c(found: &Relief, [width, height]: [usize; 2]) -> ofc_relief {
         disagreement: found.disagreement.unwrap_or(f64::NAN),
         tilt: found.tilt,
         expected_error: found.expected_error(),
+        saturation: found.saturation.map_or(0.0, f64::from),
         scale_source: found.scale_source.to_c(),
         has_background: found.has_background.to_c(),
         reason: 0,
@@ -216,6 +223,7 @@ impl FromC<ofc_relief> for Relief {
             w,
             plane,
             has_background: bool::from_c(value.has_background)?,
+            saturation: saturation(value.saturation)?,
             grid: grid.ok_or(OFC_STATUS_INVALID_PARAMETER)?,
             noise: value.noise,
             cells: [0; 4],
@@ -234,7 +242,7 @@ impl FromC<ofc_relief> for Relief {
 }
 
 /// The reason, where the picture shows no relief; otherwise the status of the refusal.
-fn reason(error: ReliefError) -> Result<ofc_no_relief, Refusal> {
+pub(crate) fn reason(error: ReliefError) -> Result<ofc_no_relief, Refusal> {
     match error {
         ReliefError::NothingTouched => Ok(OFC_NO_RELIEF_UNTOUCHED),
         ReliefError::NoMajority => Ok(OFC_NO_RELIEF_NO_PLANE),
@@ -360,22 +368,29 @@ pub unsafe extern "C" fn ofc_relief_normals(
         let found = Relief::from_c(given)?;
         ensure([dimension(given.width), dimension(given.height)] == size, OFC_STATUS_INVALID_PARAMETER)?;
         let classes = call.input_slice(classes, width * height)?;
-        let (normals, stride) = call.output_rows(normals, size, 3, normals_stride_bytes)?;
-        let mut deviations =
+        let normals = call.output_rows(normals, size, 3, normals_stride_bytes)?;
+        let deviations =
             unless_null(uncertainty, || call.output_rows(uncertainty, size, 1, uncertainty_stride_bytes))?;
-        let write = |x: usize, y: usize, normal: [f32; 3], deviation: f32| {
-            let start = y * stride + 3 * x;
-            for (slot, n) in normals.iter_mut().skip(start).zip(normal) {
-                *slot = n;
-            }
-            if let Some((deviations, stride)) = &mut deviations
-                && let Some(slot) = deviations.get_mut(y * *stride + x)
-            {
-                *slot = deviation;
-            }
-        };
-        relief::normals(&picture, background.as_ref(), &found, classes, None, write)
+        let write = normals_writer(normals, deviations);
+        relief::normals(&picture, background.as_ref(), &found, classes, write)
             .map_err(|_| OFC_STATUS_INVALID_PARAMETER)?;
         Ok(OFC_STATUS_OK)
     })
+}
+
+/// Writes normals and, where they are wanted, their deviations into rows: each with how many values lie from a row to the next.
+pub(crate) fn normals_writer<'a>(
+    (normals, stride): (&'a mut [f32], usize),
+    mut deviations: Option<(&'a mut [f32], usize)>,
+) -> impl FnMut(usize, usize, [f32; 3], f32) + 'a {
+    move |x, y, normal, deviation| {
+        for (slot, n) in normals.iter_mut().skip(y * stride + 3 * x).zip(normal) {
+            *slot = n;
+        }
+        if let Some((deviations, stride)) = &mut deviations
+            && let Some(slot) = deviations.get_mut(y * *stride + x)
+        {
+            *slot = deviation;
+        }
+    }
 }

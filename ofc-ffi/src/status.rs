@@ -45,6 +45,8 @@ pub const OFC_STATUS_NO_RELIEF: i32 = 8;
 /// Colors and normals span three dimensions, but by hardly more than the noise, or than what does not obey the model: C
 /// is not determined. `reason` of the solution says what it comes from.
 pub const OFC_STATUS_UNDETERMINED: i32 = 9;
+/// The slopes and depths of a rig are right up to a factor: nothing says what it is.
+pub const OFC_STATUS_SCALE_UNKNOWN: i32 = 10;
 
 /// A pointer that must not be NULL is NULL.
 pub const OFC_STATUS_NULL_POINTER: i32 = -10;
@@ -107,6 +109,7 @@ fn message(status: ofc_status) -> &'static CStr {
         OFC_STATUS_PAINT_UNKNOWN => c"the paint cannot be told from the shape: it is as rough, or of several hues",
         OFC_STATUS_NO_RELIEF => c"the picture shows no relief on a plane",
         OFC_STATUS_UNDETERMINED => c"C is not determined: what would determine it is hardly more than the noise, or than what does not obey the model",
+        OFC_STATUS_SCALE_UNKNOWN => c"the scale is unknown: slopes and depths are right up to a factor",
         OFC_STATUS_NULL_POINTER => c"a pointer is NULL",
         OFC_STATUS_MISALIGNED => c"a pointer or stride is not aligned for its type",
         OFC_STATUS_OVERLAP => c"an output overlaps another buffer",

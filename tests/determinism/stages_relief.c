@@ -39,6 +39,41 @@ static void mix_found(const ofc_relief *relief)
         mix_status(relief->cells[i]);
 }
 
+static void mix_model(const ofc_rig_model *model)
+{
+    mix_doubles(model->slopes, 108);
+    mix_doubles(model->plane, 45);
+    mix_doubles(model->noise, 3);
+    mix_doubles(&model->circulation, 7);
+    const int32_t numbers[] = {model->terms, model->scale_source, model->advice, model->region};
+    for (int i = 0; i < 4; i++)
+        mix_status(numbers[i]);
+}
+
+/* The bump as the frame of a rig, and as a ball. */
+static void mix_rig(const ofc_image *image, const ofc_image *background, const ofc_relief_params *params)
+{
+    static ofc_rig rig;
+    static ofc_rig_balls balls;
+    static ofc_rig_model model;
+    const double center[2] = {34, 27};
+    mix_status(ofc_rig_init(ACROSS, DOWN, &rig, &balls));
+    mix_status(ofc_rig_add(&rig, &balls, image, background, params, center, room, sizeof room, NULL, NULL));
+    const ofc_rig once = rig;
+    mix_status(ofc_rig_merge(&rig, NULL, &once, NULL));
+    mix_status(ofc_rig_solve(&rig, NULL, params, &model));
+    mix_model(&model);
+    mix_status(ofc_rig_set_scale(&rig, &model, 1.25, 0.125));
+    mix_status(ofc_rig_solve(&rig, &balls, params, &model));
+    mix_model(&model);
+    mix_status(ofc_rig_classify(&model, image, background, room, sizeof room, classes[0]));
+    mix_bytes(classes[0], ALL);
+    mix_status(ofc_rig_normals(&model, image, background, classes[0], found[0][0], sizeof found[0], uncertainty[0],
+                               sizeof uncertainty[0]));
+    mix_floats(found[0][0], 3 * ALL);
+    mix_floats(uncertainty[0], ALL);
+}
+
 void mix_relief(void)
 {
     render();
@@ -69,4 +104,6 @@ void mix_relief(void)
     ofc_relief relief;
     mix_status(ofc_relief_solve(&below, NULL, &params, room, sizeof room, classes[0], &relief));
     mix_found(&relief);
+    params.ball_radius = 30;
+    mix_rig(&image, &below, &params);
 }

@@ -74,6 +74,8 @@ pub struct ReliefScene {
     pub background: Vec<u8>,
     /// Unit normals.
     pub normals: Vec<[f64; 3]>,
+    /// The radius of the ball in pixels and its center, y down, where there is one.
+    pub ball: Option<(f64, [f64; 2])>,
 }
 
 type Vector = [f64; 3];
@@ -82,11 +84,24 @@ struct Maker {
     rng: Rng,
     lights: [Vector; 3],
     gains: [[f64; 5]; 3],
+    place: [f64; 2],
+    ball: Option<(f64, [f64; 2])>,
 }
 
 /// The scene of this kind and number.
 pub fn scene(kind: Kind, number: u64) -> ReliefScene {
-    let mut rng = Rng::new(7919 * number + kind as u64);
+    maker(kind, Rng::new(7919 * number + kind as u64)).make(kind)
+}
+
+/// A frame of the rig of this number, whose lights stay: a contact of this kind, and a ball anywhere.
+pub fn frame(rig: u64, kind: Kind, number: u64) -> ReliefScene {
+    let mut maker = maker(Kind::Ball, Rng::new(104_729 * rig + 1));
+    maker.rng = Rng::new(7919 * number + 31 * rig + kind as u64);
+    maker.place = [160.0, 100.0].map(|range| range * (maker.rng.unit() - 0.5));
+    maker.make(kind)
+}
+
+fn maker(kind: Kind, mut rng: Rng) -> Maker {
     let first = rng.unit() * 2.0 * core::f64::consts::PI;
     let lights = [0.0, 1.0, 2.0].map(|i| {
         let azimuth = first + (120.0 * i + 50.0 * rng.unit() - 25.0).to_radians();
@@ -99,7 +114,7 @@ pub fn scene(kind: Kind, number: u64) -> ReliefScene {
         .map(|i| [0, 1, 2].map(|k| lights[i][k] + (0..3).map(|j| mix[i][j] * lights[j][k]).sum::<f64>()));
     let spread = if kind == Kind::Vignette { 0.3 } else { 0.12 };
     let gains = [[(); 5]; 3].map(|row| row.map(|()| spread * rng.normal_pair()[0]));
-    Maker { rng, lights: mixed, gains }.make(kind)
+    Maker { rng, lights: mixed, gains, place: [0.0; 2], ball: None }
 }
 
 impl Maker {
@@ -174,7 +189,12 @@ impl Maker {
             })
             .collect();
         let plane: Vec<Vector> = (0..WIDTH * HEIGHT).map(|i| self.plain(i)).collect();
-        ReliefScene { rgb: self.quantized(&picture), background: self.quantized(&plane), normals }
+        ReliefScene {
+            rgb: self.quantized(&picture),
+            background: self.quantized(&plane),
+            normals,
+            ball: self.ball,
+        }
     }
 
     fn plain(&self, i: usize) -> Vector {
@@ -232,8 +252,11 @@ impl Maker {
                 let (share, steepest) = (uniform(0.03, 0.3), uniform(25.0, 55.0).to_radians());
                 let radius = (share * (WIDTH * HEIGHT) as f64 / core::f64::consts::PI).sqrt();
                 let (ball, skirt, slope) = (radius / steepest.sin(), 0.25 * radius, steepest.tan());
+                let [right, up] = self.place;
+                let center = [right + 0.5 * (WIDTH - 1) as f64, 0.5 * (HEIGHT - 1) as f64 - up];
+                self.ball = Some((ball, center));
                 each(&|x, y| {
-                    let d = x.hypot(y);
+                    let d = (x - right).hypot(y - up);
                     if d < radius {
                         (ball * ball - d * d).sqrt() - ball * steepest.cos() + 0.5 * skirt * slope
                     } else {

@@ -79,7 +79,8 @@ fn taken(instruction: &str) -> u64 {
             .strip_prefix("-0x")
             .and_then(|rest| rest.strip_suffix("(%rsp),%r11"))
             .and_then(hexadecimal)
-            .map_or(0, |number| number - PAGE),
+            // An address below the stack pointer that is less than a page away is no such end.
+            .map_or(0, |number| number.saturating_sub(PAGE)),
         _ => 0,
     }
 }

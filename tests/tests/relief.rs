@@ -27,7 +27,7 @@ fn solve(image: &Image, background: Option<&Image>, params: &ReliefParams) -> Re
     let arena = Arena::new(&mut [], &mut singles, &mut integers);
     let found = estimate(image, background, params, arena, &mut classes)?;
     let (mut map, mut deviations) = (vec![[0.0; 3]; width * height], vec![0.0; width * height]);
-    normals(image, background, &found, &classes, None, |x, y, normal, deviation| {
+    normals(image, background, &found, &classes, |x, y, normal, deviation| {
         map[y * width + x] = normal;
         deviations[y * width + x] = deviation;
     })?;

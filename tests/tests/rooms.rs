@@ -5,7 +5,7 @@ use std::path::Path;
 use syn::visit::{self, Visit};
 
 /// Each room with the rooms above it that it may not use.
-const ROOMS: [(&str, &[&str]); 10] = [
+const ROOMS: [(&str, &[&str]); 11] = [
     ("math", &[]),
     ("picture", &[]),
     ("color", &[]),
@@ -15,6 +15,7 @@ const ROOMS: [(&str, &[&str]); 10] = [
     ("render", &["color", "light", "orientation", "surface"]),
     ("solve", &[]),
     ("stream", &[]),
+    ("rig", &["light", "surface", "render", "solve", "stream"]),
     ("check", &[]),
 ];
 

@@ -20,6 +20,7 @@ SOURCES = "".join(path.read_text(encoding="utf-8") for path in Path(ofc.__file__
 
 # Not wrapped, and why.
 A_STAGE = "a stage of ofc_solve(), whose Solution has what it finds"
+A_RIG = "rigs are not wrapped yet"
 LEFT_OUT = {
     "ofc_version": "ofc_version_string() is __version__",
     "ofc_segment_mark": "labels == label is the same mask",
@@ -55,6 +56,13 @@ LEFT_OUT = {
     "ofc_orthogonal_annealing": A_STAGE,
     "ofc_constrained_slants_integrable_workspace_size": A_STAGE,
     "ofc_constrained_slants_integrable": A_STAGE,
+    "ofc_rig_init": A_RIG,
+    "ofc_rig_add": A_RIG,
+    "ofc_rig_merge": A_RIG,
+    "ofc_rig_set_scale": A_RIG,
+    "ofc_rig_solve": A_RIG,
+    "ofc_rig_classify": A_RIG,
+    "ofc_rig_normals": A_RIG,
 }
 
 

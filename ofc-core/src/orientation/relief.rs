@@ -34,10 +34,24 @@ mod parameters;
 mod reference;
 mod result;
 mod scale;
+mod survey;
 
-pub use estimate::{estimate, need};
+pub use estimate::estimate;
 pub use grid::Grid;
 pub use normals::normals;
 pub use parameters::ReliefParams;
 pub use reference::{ORDER, Polynomial, TERMS};
 pub use result::{PixelClass, Relief, ReliefError, ScaleSource};
+pub use survey::need;
+
+pub(crate) use circulation::{Circulation, Least, WEIGHT};
+pub(crate) use contact::distances;
+pub(crate) use estimate::{
+    ANISOTROPY, CIRCULATION, CIRCULATION_RATIO, LARGEST_DISAGREEMENT, LEAST_DEVIATION, USUAL_DEVIATION,
+    USUAL_TILT, eigenvalues,
+};
+pub(crate) use normals::{Reference, Slopes, normals_by};
+pub(crate) use outward::arms;
+pub(crate) use result::deviation_by;
+pub(crate) use scale::Inner;
+pub(crate) use survey::{KnownPlane, Memory, Survey, survey};

@@ -20,6 +20,7 @@ class Status(enum.IntEnum):
     PAINT_UNKNOWN = 7
     NO_RELIEF = 8
     UNDETERMINED = 9
+    SCALE_UNKNOWN = 10
     NULL_POINTER = -10
     MISALIGNED = -11
     OVERLAP = -12
@@ -195,6 +196,7 @@ class Scale(enum.IntEnum):
     UNKNOWN = 0
     COLORS = 1
     BALL = 2
+    GIVEN = 3
 
 
 class NoRelief(enum.IntEnum):

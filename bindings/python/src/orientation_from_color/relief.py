@@ -53,6 +53,7 @@ class Relief(Report):
     disagreement: float
     tilt: float
     expected_error: float
+    saturation: float
     scale_source: Scale
     has_background: bool
     reason: NoRelief

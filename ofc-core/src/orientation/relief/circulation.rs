@@ -8,6 +8,8 @@
 
 use super::grid::{Grid, class};
 use super::result::PixelClass;
+use crate::math::mat3::Mat3;
+use crate::math::mat6::Mat6;
 use crate::math::pencil::{self, Smallest};
 
 /// Cells along a window.
@@ -16,8 +18,11 @@ const WINDOW: usize = 16;
 /// Windows begin so many cells apart.
 const STEP: usize = 8;
 
+/// A window has STEP^2 cells of its own, and its mean circulation is over WINDOW^2.
+pub(crate) const WEIGHT: f64 = (STEP * STEP) as f64 / (WINDOW * WINDOW) as f64;
+
 /// The least circulation, and what it belongs to.
-pub(super) struct Least {
+pub(crate) struct Least {
     /// u and v, at an arbitrary scale.
     pub w: [[f64; 3]; 2],
     /// The mean squared circulation relative to the energy.
@@ -26,59 +31,68 @@ pub(super) struct Least {
     pub second: f64,
 }
 
-/// The field of the least circulation; `None` where delta has no energy.
-pub(super) fn least(
-    grid: &Grid,
-    planes: &[&mut [f32]; 3],
-    classes: &[u32],
-    noise: [f64; 3],
-) -> Option<Least> {
-    let raised =
-        |cell: usize| classes.get(cell).is_some_and(|&state| class(state) >= PixelClass::Skirt as u32);
-    let delta = |cell: usize| {
-        let is_raised = raised(cell);
-        [0, 1, 2].map(|k| {
-            let value = planes.get(k).and_then(|plane| plane.get(cell));
-            value.filter(|_| is_raised).map_or(0.0, |&value| f64::from(value))
-        })
-    };
-    let mut energy = [[0.0; 3]; 3];
-    for cell in (0..grid.len()).filter(|&cell| raised(cell)) {
-        let delta = delta(cell);
-        for (column, factor) in energy.iter_mut().zip(delta) {
-            for (entry, value) in column.iter_mut().zip(delta) {
-                *entry += factor * value;
+/// What the fields of delta that have the least circulation follow from: sums, which add from picture to picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Circulation {
+    /// The sum of z z^T over all windows.
+    pub squares: Mat6,
+    /// The sum of delta delta^T, with the noise, over all cells of the contact and its skirt.
+    pub energy: Mat3,
+}
+
+impl Circulation {
+    /// Those of one picture.
+    pub fn of(grid: &Grid, planes: &[&mut [f32]; 3], classes: &[u32], noise: [f64; 3]) -> Self {
+        let raised =
+            |cell: usize| classes.get(cell).is_some_and(|&state| class(state) >= PixelClass::Skirt as u32);
+        let delta = |cell: usize| {
+            let is_raised = raised(cell);
+            [0, 1, 2].map(|k| {
+                let value = planes.get(k).and_then(|plane| plane.get(cell));
+                value.filter(|_| is_raised).map_or(0.0, |&value| f64::from(value))
+            })
+        };
+        let Self { mut squares, mut energy } = Self::default();
+        for cell in (0..grid.len()).filter(|&cell| raised(cell)) {
+            let delta = delta(cell);
+            add_product(&mut energy, &delta);
+            for (i, (column, deviation)) in energy.iter_mut().zip(noise).enumerate() {
+                column.iter_mut().skip(i).take(1).for_each(|entry| *entry += deviation * deviation);
             }
         }
-        for (i, (column, deviation)) in energy.iter_mut().zip(noise).enumerate() {
-            column.iter_mut().skip(i).take(1).for_each(|entry| *entry += deviation * deviation);
-        }
-    }
-    let mut sums = [[0.0; 6]; 6];
-    for y in (0..grid.height.saturating_sub(WINDOW)).step_by(STEP) {
-        for x in (0..grid.width.saturating_sub(WINDOW)).step_by(STEP) {
-            if let Some(z) = circulation(grid, classes, &delta, x, y) {
-                for (column, factor) in sums.iter_mut().zip(z) {
-                    for (entry, value) in column.iter_mut().zip(z) {
-                        *entry += factor * value;
-                    }
+        for y in (0..grid.height.saturating_sub(WINDOW)).step_by(STEP) {
+            for x in (0..grid.width.saturating_sub(WINDOW)).step_by(STEP) {
+                if let Some(z) = circulation(grid, classes, &delta, x, y) {
+                    add_product(&mut squares, &z);
                 }
             }
         }
+        Self { squares, energy }
     }
-    // A window has STEP^2 cells of its own, and its mean circulation is over WINDOW^2.
-    let weight = (STEP * STEP) as f64 / (WINDOW * WINDOW) as f64;
-    // u and v have the same energy.
-    let mut energies = [[0.0; 6]; 6];
-    for (i, column) in energies.iter_mut().enumerate() {
-        let (halves, _) = column.as_chunks_mut::<3>();
-        for (half, of) in halves.iter_mut().skip(i / 3).take(1).zip(energy.iter().skip(i % 3)) {
-            *half = *of;
+
+    /// The field of the least circulation; `None` where delta has no energy.
+    pub fn least(&self) -> Option<Least> {
+        // u and v have the same energy.
+        let mut energies = [[0.0; 6]; 6];
+        for (i, column) in energies.iter_mut().enumerate() {
+            let (halves, _) = column.as_chunks_mut::<3>();
+            for (half, of) in halves.iter_mut().skip(i / 3).take(1).zip(self.energy.iter().skip(i % 3)) {
+                *half = *of;
+            }
+        }
+        let Smallest { vector, values: [circulation, second] } = pencil::smallest(&self.squares, &energies)?;
+        let ([u, v], _) = vector.as_chunks::<3>() else { return None };
+        Some(Least { w: [*u, *v], circulation: WEIGHT * circulation, second: WEIGHT * second })
+    }
+}
+
+/// Adds v v^T.
+fn add_product<const N: usize>(sum: &mut [[f64; N]; N], v: &[f64; N]) {
+    for (column, factor) in sum.iter_mut().zip(v) {
+        for (entry, value) in column.iter_mut().zip(v) {
+            *entry += factor * value;
         }
     }
-    let Smallest { vector, values: [circulation, second] } = pencil::smallest(&sums, &energies)?;
-    let ([u, v], _) = vector.as_chunks::<3>() else { return None };
-    Some(Least { w: [*u, *v], circulation: weight * circulation, second: weight * second })
 }
 
 /// z of the window whose top left cell is (x, y); `None` where it reaches out of the mask.

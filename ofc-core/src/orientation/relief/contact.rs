@@ -108,7 +108,7 @@ fn spread(grid: &Grid, states: &mut [u32], other: &mut [u32], radius: usize, pic
 }
 
 /// How many steps it is from each cell of the contact to a cell beside it; zero beside it.
-pub(super) fn distances(grid: &Grid, classes: &[u32], distances: &mut [u32]) {
+pub(crate) fn distances(grid: &Grid, classes: &[u32], distances: &mut [u32]) {
     let far = (grid.width + grid.height) as u32;
     for (state, distance) in classes.iter().zip(distances.iter_mut()) {
         *distance = if class(*state) == PixelClass::Contact as u32 { far } else { 0 };

@@ -49,14 +49,14 @@ impl Grid {
     }
 
     /// Column and row of a cell.
-    pub(super) fn place(&self, cell: usize) -> [usize; 2] {
+    pub(crate) fn place(&self, cell: usize) -> [usize; 2] {
         // A grid has a width; what divides is never zero.
         let row = cell.checked_div(self.width).unwrap_or(0);
         [cell - row * self.width, row]
     }
 
     /// The middle of a cell, in [-1, 1] across and down the picture.
-    pub(super) fn middle(&self, cell: usize) -> [f64; 2] {
+    pub(crate) fn middle(&self, cell: usize) -> [f64; 2] {
         let along = |i: usize, count: usize| (2 * i + 1) as f64 / count as f64 - 1.0;
         let [x, y] = self.place(cell);
         [along(x, self.width), along(y, self.height)]
@@ -75,10 +75,10 @@ pub(super) enum Cell {
 }
 
 /// Three planes of one number a cell.
-pub(super) type Planes<'w> = [&'w mut [f32]; 3];
+pub(crate) type Planes<'w> = [&'w mut [f32]; 3];
 
 /// The class of a cell from its state, which may also say that it has no color of its own.
-pub(super) const fn class(state: u32) -> u32 {
+pub(crate) const fn class(state: u32) -> u32 {
     state & !BRIDGED
 }
 

@@ -1,12 +1,49 @@
 //! The normals of a relief on a plane, pixel by pixel.
 
-use super::estimate::relative;
 use super::grid::Grid;
+use super::reference::Polynomial;
 use super::result::{PixelClass, Relief, ReliefError};
 use super::scale::unit;
+use super::survey::relative;
 use crate::math::mat3;
 use crate::picture::{Image, Usable, WINDOW, Window};
 use libm::sqrt;
+
+/// What turns the colors of pixels into slopes.
+pub(crate) trait Slopes {
+    /// (n1, n2) of a pixel whose color relative to the plane is `delta`, at a place in [-1, 1] across and down the picture.
+    fn slopes(&self, place: [f64; 2], delta: [f64; 3]) -> [f64; 2];
+
+    /// The standard deviation in radians of a normal whose slant has this sine, but for the pixel's noise.
+    fn model_deviation(&self, sine: f64) -> f64;
+
+    /// The variance of each slope that comes from noise in delta with these deviations.
+    fn noise(&self, noise: [f64; 3]) -> f64;
+}
+
+/// The plane that the slopes are relative to.
+pub(crate) struct Reference<'a> {
+    pub grid: Grid,
+    pub plane: &'a Polynomial,
+    /// The deviation of each channel of a cell of the plane, relative to its color.
+    pub noise: [f64; 3],
+    pub saturation: Option<f32>,
+}
+
+impl Slopes for Relief {
+    fn slopes(&self, _: [f64; 2], delta: [f64; 3]) -> [f64; 2] {
+        self.w.map(|row| mat3::dot(row, delta))
+    }
+
+    fn model_deviation(&self, sine: f64) -> f64 {
+        self.model_deviation(sine)
+    }
+
+    fn noise(&self, noise: [f64; 3]) -> f64 {
+        let terms = self.w.iter().flatten().zip(noise.iter().cycle());
+        terms.map(|(w, deviation)| w * w * deviation * deviation).sum::<f64>() / 2.0
+    }
+}
 
 /// Writes the unit normal of every pixel, and its 1-sigma angular uncertainty in radians, as `write(x, y, normal, uncertainty)` says;
 /// both are NaN where the pixel is masked out or of the class [`PixelClass::None`], or has no usable color and is not on the plane.
@@ -20,31 +57,39 @@ pub fn normals(
     background: Option<&Image>,
     found: &Relief,
     classes: &[u8],
-    saturation: Option<f32>,
+    write: impl FnMut(usize, usize, [f32; 3], f32),
+) -> Result<(), ReliefError> {
+    if background.is_some() != found.has_background {
+        return Err(ReliefError::Size);
+    }
+    let Relief { grid, plane, noise, saturation, .. } = found;
+    let reference = Reference { grid: *grid, plane, noise: *noise, saturation: *saturation };
+    normals_by(found, image, background, &reference, classes, write)
+}
+
+/// [`normals`] by any slopes.
+pub(crate) fn normals_by(
+    slopes: &impl Slopes,
+    image: &Image,
+    background: Option<&Image>,
+    reference: &Reference,
+    classes: &[u8],
     mut write: impl FnMut(usize, usize, [f32; 3], f32),
 ) -> Result<(), ReliefError> {
     let (width, height) = (image.width(), image.height());
+    let Reference { grid, plane, .. } = reference;
     let fits = background.is_none_or(|b| [b.width(), b.height()] == [width, height])
-        && background.is_some() == found.has_background
         && classes.len() == width * height
-        && Grid::of(width, height) == Some(found.grid);
+        && Grid::of(width, height) == Some(*grid);
     if !fits {
         return Err(ReliefError::Size);
     }
-    let usable = Usable::below(saturation.unwrap_or(image.sample().saturation()));
+    let usable = Usable::below(reference.saturation.unwrap_or(image.sample().saturation()));
     // The noise of a pixel from that of a cell, an average of as many as it has.
-    let pixel = found.noise.map(|deviation| deviation * found.grid.side as f64);
-    let noise = found
-        .w
-        .iter()
-        .flatten()
-        .zip(pixel.iter().cycle())
-        .map(|(w, deviation)| w * w * deviation * deviation)
-        .sum::<f64>()
-        / 2.0;
+    let noise = slopes.noise(reference.noise.map(|deviation| deviation * grid.side as f64));
     let (mut window, mut other) = (Window::new(), Window::new());
     for y in 0..height {
-        let down = place(y, found.grid.height * found.grid.side);
+        let down = place(y, grid.height * grid.side);
         for x in (0..width).step_by(WINDOW) {
             image.read(x, y, &mut window);
             let bits = usable.exposed(&window);
@@ -59,17 +104,18 @@ pub fn normals(
                 } else if !is_usable {
                     ([f64::NAN; 3], f64::NAN)
                 } else {
+                    let at = [place(x + i, grid.width * grid.side), down];
                     let plane = match background {
                         Some(_) => other.pixel(i).map(f64::from),
-                        None => found.plane.at([place(x + i, found.grid.width * found.grid.side), down]),
+                        None => plane.at(at),
                     };
                     let mut delta = [0.0; 3];
                     for ((delta, color), plane) in delta.iter_mut().zip(window.pixel(i)).zip(plane) {
                         *delta = relative(f64::from(color), plane);
                     }
-                    let (normal, _) = unit(found.w.map(|row| mat3::dot(row, delta)));
+                    let (normal, _) = unit(slopes.slopes(at, delta));
                     let [n1, n2, n3] = normal;
-                    let model = found.model_deviation(sqrt(n1 * n1 + n2 * n2));
+                    let model = slopes.model_deviation(sqrt(n1 * n1 + n2 * n2));
                     (normal, sqrt(model * model + noise / (n3 * n3)))
                 };
                 write(x + i, y, normal.map(|n| n as f32), deviation as f32);

@@ -27,6 +27,8 @@ pub enum ScaleSource {
     Colors = 1,
     /// From the radius of the ball that was given.
     Ball = 2,
+    /// It was set.
+    Given = 3,
 }
 
 /// A relief on a plane: what turns colors into its normals, and how far to trust them.
@@ -38,6 +40,8 @@ pub struct Relief {
     pub plane: Polynomial,
     /// Whether a picture of the plane was given.
     pub has_background: bool,
+    /// The level of saturation, where [`ReliefParams`](super::ReliefParams) set one.
+    pub saturation: Option<f32>,
     /// The cells that the evidence was taken from.
     pub grid: Grid,
     /// The deviation of each channel of a cell of the plane, relative to its color: noise, and what the reference misses.
@@ -74,10 +78,8 @@ impl Relief {
     /// sine: of the scale, which grows with the slope, and of W, which does not.
     #[must_use]
     pub fn model_deviation(&self, sine: f64) -> f64 {
-        let model = self.disagreement.unwrap_or(self.circulation).min(1.0) * self.tilt * self.tilt;
-        let cosine_square = (1.0 - sine * sine).max(0.05);
-        let scale = self.scale_deviation * sine;
-        libm::sqrt((model + scale * scale) / cosine_square)
+        let share = self.disagreement.unwrap_or(self.circulation);
+        deviation_by(share, self.tilt, self.scale_deviation, sine)
     }
 
     /// The expected error in radians of the normals in the contact.
@@ -85,6 +87,15 @@ impl Relief {
     pub fn expected_error(&self) -> f64 {
         self.model_deviation(self.tilt)
     }
+}
+
+/// The deviation of a normal whose slant has this sine: where the slopes, whose root mean square is `tilt`, miss this share of their
+/// variance, and the logarithm of their scale has this deviation.
+pub(crate) fn deviation_by(share: f64, tilt: f64, scale_deviation: f64, sine: f64) -> f64 {
+    let model = share.min(1.0) * tilt * tilt;
+    let cosine_square = (1.0 - sine * sine).max(0.05);
+    let scale = scale_deviation * sine;
+    libm::sqrt((model + scale * scale) / cosine_square)
 }
 
 /// Why there is no relief on a plane.

@@ -42,13 +42,13 @@ const MOST_BEYOND: f64 = 0.1;
 
 /// A scale, and how far both models disagree with it.
 #[derive(Clone, Copy)]
-pub(super) struct Scale {
+pub(crate) struct Scale {
     pub factor: f64,
     pub disagreement: f64,
 }
 
 /// The inner contact and its slopes at an arbitrary scale.
-pub(super) struct Inner<'a> {
+pub(crate) struct Inner<'a> {
     pub grid: &'a Grid,
     pub delta: [&'a [f32]; 3],
     pub classes: &'a [u32],
@@ -75,13 +75,13 @@ impl Inner<'_> {
     }
 
     /// The cells that are at least this share of the largest distance away from the border.
-    fn deeper(&self, largest: f64, share: f64) -> impl Iterator<Item = usize> {
+    pub fn deeper(&self, largest: f64, share: f64) -> impl Iterator<Item = usize> {
         let limit = share * largest;
         self.contact().filter(move |&cell| self.distances.get(cell).is_some_and(|&d| f64::from(d) > limit))
     }
 
     /// The largest distance but for a few cells.
-    fn largest(&self, scratch: &mut [f32]) -> Option<f64> {
+    pub fn largest(&self, scratch: &mut [f32]) -> Option<f64> {
         let mut count = 0_usize;
         for (cell, slot) in self.contact().zip(scratch.iter_mut()) {
             *slot = self.distances.get(cell).map_or(0.0, |&d| d as f32);
@@ -211,7 +211,7 @@ impl Inner<'_> {
 }
 
 /// The unit vector of these first two components, shortened where they are too long, and whether they were.
-pub(super) fn unit([n1, n2]: [f64; 2]) -> ([f64; 3], bool) {
+pub(crate) fn unit([n1, n2]: [f64; 2]) -> ([f64; 3], bool) {
     let square = n1 * n1 + n2 * n2;
     let shorter = if square > LARGEST_SQUARE { sqrt(LARGEST_SQUARE / square) } else { 1.0 };
     let n3 = sqrt(1.0 - square.min(LARGEST_SQUARE));

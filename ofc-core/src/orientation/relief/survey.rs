@@ -1,0 +1,209 @@
+//! A picture of a plane as cells: how much the color of each differs from the plane's, and which are touched.
+
+use super::cells::{self, Selection, Source};
+use super::circulation::Circulation;
+use super::contact;
+use super::fill::fill;
+use super::grid::{BRIDGED, Cell, Grid, class};
+use super::reference::{self, Polynomial};
+use super::result::{PixelClass, ReliefError};
+use crate::math::arena::{Arena, Need};
+use crate::picture::{Image, Sample, Usable};
+
+/// A contact has at least so many cells.
+const FEWEST_CELLS: usize = 50;
+
+/// The least noise of integers.
+const ROUNDING: f64 = 0.5;
+
+/// What [`estimate`](super::estimate()) needs as workspace for a picture of this size; `None` where it is too small.
+#[must_use]
+pub const fn need(width: usize, height: usize) -> Option<Need> {
+    match Grid::of(width, height) {
+        Some(grid) => Some(Need { doubles: 0, singles: 7 * grid.len(), integers: 2 * grid.len() }),
+        None => None,
+    }
+}
+
+/// The workspace, cut up.
+pub(crate) struct Memory<'w> {
+    /// Colors of the picture, then relative to the plane.
+    pub color: [&'w mut [f32]; 3],
+    /// Colors of the plane, then free.
+    pub plane: [&'w mut [f32]; 3],
+    pub scratch: &'w mut [f32],
+    /// States of cells, then classes.
+    pub classes: &'w mut [u32],
+    /// Counts, then free.
+    pub other: &'w mut [u32],
+}
+
+impl<'w> Memory<'w> {
+    fn cut(grid: &Grid, arena: &mut Arena<'w>) -> Option<Self> {
+        let len = grid.len();
+        let mut planes = || Some([arena.singles(len)?, arena.singles(len)?, arena.singles(len)?]);
+        let (color, plane) = (planes()?, planes()?);
+        let scratch = arena.singles(len)?;
+        Some(Self { color, plane, scratch, classes: arena.integers(len)?, other: arena.integers(len)? })
+    }
+}
+
+/// What is known of a plane before a picture of it is looked at.
+#[derive(Clone, Copy)]
+pub(crate) struct KnownPlane<'a> {
+    /// Its color.
+    pub plane: &'a Polynomial,
+    /// The deviation of each channel of a cell, relative to its color.
+    pub noise: [f64; 3],
+}
+
+/// A picture as cells.
+pub(crate) struct Survey<'w> {
+    pub grid: Grid,
+    /// The color of the plane.
+    pub plane: Polynomial,
+    /// The deviation of each channel of a cell of the plane, relative to its color.
+    pub noise: [f64; 3],
+    /// Cells of each [`PixelClass`].
+    pub cells: [usize; 4],
+    pub memory: Memory<'w>,
+}
+
+/// Looks at a picture, and at one of the plane alone if there is one. What is known of the plane is not estimated again.
+///
+/// # Errors
+/// See [`ReliefError`].
+pub(crate) fn survey<'w>(
+    image: &Image,
+    background: Option<&Image>,
+    saturation: Option<f32>,
+    known: Option<KnownPlane>,
+    mut workspace: Arena<'w>,
+) -> Result<Survey<'w>, ReliefError> {
+    let (width, height) = (image.width(), image.height());
+    if background.is_some_and(|b| [b.width(), b.height()] != [width, height]) {
+        return Err(ReliefError::Size);
+    }
+    let (Some(grid), Some(need)) = (Grid::of(width, height), need(width, height)) else {
+        return Err(ReliefError::TooSmall);
+    };
+    let mut memory = Memory::cut(&grid, &mut workspace).ok_or(ReliefError::Workspace(need))?;
+    let usable = Usable::below(saturation.unwrap_or(image.sample().saturation()));
+    let pictures = Pictures { grid, image, background, usable };
+    let plane = pictures.average(known, &mut memory).ok_or(ReliefError::TooFewPixels)?;
+    pictures.compare(&plane, &mut memory);
+    let Memory { color, scratch, classes: states, other, .. } = &mut memory;
+    let noise = match known {
+        Some(known) => known.noise,
+        None => contact::noise(color, states, pictures.rounding(&plane), scratch)
+            .ok_or(ReliefError::TooFewPixels)?,
+    };
+    fill(&grid, color, states);
+    contact::classify(&grid, color, noise, states, other);
+    let mut cells = [0; 4];
+    for state in states.iter() {
+        cells.iter_mut().skip(class(*state) as usize).take(1).for_each(|count| *count += 1);
+    }
+    Ok(Survey { grid, plane, noise, cells, memory })
+}
+
+struct Pictures<'a> {
+    grid: Grid,
+    image: &'a Image<'a>,
+    background: Option<&'a Image<'a>>,
+    usable: Usable,
+}
+
+impl Pictures<'_> {
+    /// The plane's polynomial; the averages of both pictures are in their planes then, dark spots left out.
+    fn average(&self, known: Option<KnownPlane>, memory: &mut Memory) -> Option<Polynomial> {
+        let Self { grid, image, background, usable } = self;
+        let Memory { color, plane, scratch, classes, other } = memory;
+        let source = background.unwrap_or(image);
+        let source_usable =
+            if background.is_some() { Usable::below(source.sample().saturation()) } else { *usable };
+        let polynomial = if let Some(known) = known {
+            *known.plane
+        } else {
+            let all = Selection { usable: source_usable, plane: None };
+            cells::average(&mut [Source::new(source, all, plane)], grid, classes, other);
+            reference::fit(grid, plane, classes, scratch)?
+        };
+        let without_spots = |usable| Selection { usable, plane: Some(&polynomial) };
+        let of_image = Source::new(image, without_spots(*usable), color);
+        match background {
+            None => cells::average(&mut [of_image], grid, classes, other),
+            Some(background) => {
+                let of_background = Source::new(background, without_spots(source_usable), plane);
+                cells::average(&mut [of_image, of_background], grid, classes, other);
+            }
+        }
+        let known = classes.iter().filter(|state| **state == Cell::Known as u32).count();
+        (known > FEWEST_CELLS).then_some(polynomial)
+    }
+
+    /// Makes the picture's colors relative to the plane's.
+    fn compare(&self, plane: &Polynomial, memory: &mut Memory) {
+        let Memory { color, plane: reference, .. } = memory;
+        for cell in 0..self.grid.len() {
+            let by_polynomial = match self.background {
+                Some(_) => [1.0; 3],
+                None => plane.at(self.grid.middle(cell)),
+            };
+            for ((color, reference), fitted) in color.iter_mut().zip(reference.iter()).zip(by_polynomial) {
+                let reference = match self.background {
+                    Some(_) => reference.get(cell).map_or(1.0, |&value| f64::from(value)),
+                    None => fitted,
+                };
+                if let Some(value) = color.get_mut(cell) {
+                    *value = relative(f64::from(*value), reference) as f32;
+                }
+            }
+        }
+    }
+
+    /// What the rounding of pixels to integers makes of a cell's relative color: half a step, because the colors of a plane without
+    /// noise are but one or two.
+    fn rounding(&self, plane: &Polynomial) -> [f64; 3] {
+        let step = if self.image.sample() == Sample::F32 { 0.0 } else { ROUNDING };
+        plane.at([0.0; 2]).map(|color| step / (color.max(1.0) * self.grid.side as f64))
+    }
+}
+
+impl Survey<'_> {
+    /// Whether a part of the picture is touched, and no more than half.
+    pub fn check(&self) -> Result<(), ReliefError> {
+        let [_, untouched, skirt, touched] = self.cells;
+        if touched < FEWEST_CELLS {
+            return Err(ReliefError::NothingTouched);
+        }
+        if touched > untouched + skirt {
+            return Err(ReliefError::NoMajority);
+        }
+        Ok(())
+    }
+
+    /// The sums that tell which field of the relative colors has the least circulation.
+    pub fn circulation(&self) -> Circulation {
+        let Memory { color, classes, .. } = &self.memory;
+        Circulation::of(&self.grid, color, classes, self.noise)
+    }
+
+    /// The classes of pixels from those of their cells, for rows of so many pixels.
+    pub fn write(&self, width: usize, classes: &mut [u8]) {
+        let states = &self.memory.classes;
+        for (y, row) in classes.chunks_mut(width.max(1)).enumerate() {
+            for (x, class) in row.iter_mut().enumerate() {
+                let state = states.get(self.grid.cell(x, y)).copied().unwrap_or(PixelClass::None as u32);
+                // What has no color of its own has no normal either, but on the plane.
+                let is_bridged = state & BRIDGED != 0 && self::class(state) != PixelClass::Plane as u32;
+                *class = if is_bridged { PixelClass::None as u8 } else { self::class(state) as u8 };
+            }
+        }
+    }
+}
+
+/// How far a color is from that of the plane, relative to it.
+pub(crate) fn relative(color: f64, plane: f64) -> f64 {
+    if plane > 0.0 { color / plane - 1.0 } else { 0.0 }
+}

@@ -1,0 +1,316 @@
+/* A rig: bumps are added, merged and solved, the scale is known, set or unknown, and bad arguments leave everything as it was. */
+#include "contract.h"
+
+enum { ACROSS = 160, DOWN = 120, ALL = ACROSS * DOWN };
+
+static uint8_t frame[DOWN][ACROSS][3], plane[DOWN][ACROSS][3];
+static double truth[DOWN][ACROSS][3];
+static uint64_t room[36 * ALL / sizeof(uint64_t)];
+
+static struct {
+    ofc_rig rig;
+    ofc_rig_balls balls;
+    ofc_rig_model model;
+    ofc_no_relief no_relief;
+    uint8_t classes[DOWN][ACROSS];
+    float normals[DOWN][ACROSS + 1][3];
+    float uncertainty[DOWN][ACROSS];
+} out;
+
+static ofc_relief_params params;
+static const double radius = 60;
+
+static ofc_image image_of(const void *pixels)
+{
+    const ofc_image image = {
+        .pixels = pixels, .width = ACROSS, .height = DOWN, .row_stride_bytes = ACROSS * 3, .format = OFC_PIXEL_RGB8};
+    return image;
+}
+
+/* A spherical cap in a skirt at this place, with noise of one level, under three lights; and the plane without it. */
+static void render(double x0, double y0)
+{
+    static const double lights[3][3] = {{110, 20, 140}, {-80, 100, 130}, {-40, -110, 120}};
+    const double rim = 24, skirt = 10, steepest = rim / sqrt(radius * radius - rim * rim);
+    uint32_t random = 1;
+    for (int y = 0; y < DOWN; y++)
+        for (int x = 0; x < ACROSS; x++) {
+            const double u = x - x0, v = y0 - y, r = sqrt(u * u + v * v);
+            const double slope = r < rim            ? r / sqrt(radius * radius - r * r)
+                                 : r < rim + skirt ? steepest * (rim + skirt - r) / skirt
+                                                   : 0;
+            const double p = r > 0 ? -u / r * slope : 0, q = r > 0 ? -v / r * slope : 0, length = sqrt(1 + p * p + q * q);
+            const double normal[3] = {-p / length, -q / length, 1 / length};
+            memcpy(truth[y][x], normal, sizeof normal);
+            for (int c = 0; c < 3; c++) {
+                const double *light = lights[c];
+                random = random * 1664525U + 1013904223U;
+                const double noise = (double)(random >> 16) / 32768.0 - 1;
+                const double lit = light[0] * normal[0] + light[1] * normal[1] + light[2] * normal[2];
+                frame[y][x][c] = (uint8_t)fmax(0, lit + noise + 0.5);
+                plane[y][x][c] = (uint8_t)(light[2] - noise + 0.5);
+            }
+        }
+}
+
+static int prepare(void **state)
+{
+    (void)state;
+    render(78, 60);
+    return ofc_relief_params_default(&params) == OFC_STATUS_OK ? 0 : -1;
+}
+
+static ofc_status add(const ofc_image *image, const ofc_image *background, double ball, const double *center)
+{
+    ofc_relief_params given = params;
+    given.ball_radius = ball;
+    return ofc_rig_add(&out.rig, &out.balls, image, background, &given, center, room, sizeof room, out.classes[0],
+                       &out.no_relief);
+}
+
+/* Four presses of a ball. */
+static void press(double ball, int has_center)
+{
+    static const double places[4][2] = {{60, 50}, {100, 50}, {60, 75}, {100, 70}};
+    const ofc_image image = image_of(frame), below = image_of(plane);
+    assert_int_equal(ofc_rig_init(ACROSS, DOWN, &out.rig, &out.balls), OFC_STATUS_OK);
+    for (int i = 0; i < 4; i++) {
+        render(places[i][0], places[i][1]);
+        assert_int_equal(add(&image, &below, ball, has_center ? places[i] : NULL), OFC_STATUS_OK);
+        assert_int_equal(out.no_relief, 0);
+    }
+    assert_int_equal(out.rig.frames, 4);
+    render(78, 60);
+}
+
+static double error(void)
+{
+    const ofc_image image = image_of(frame), below = image_of(plane);
+    assert_int_equal(ofc_rig_classify(&out.model, &image, &below, room, sizeof room, out.classes[0]), OFC_STATUS_OK);
+    assert_int_equal(ofc_rig_normals(&out.model, &image, &below, out.classes[0], out.normals[0][0],
+                                     sizeof out.normals[0], out.uncertainty[0], sizeof out.uncertainty[0]),
+                     OFC_STATUS_OK);
+    double sum = 0;
+    int count = 0;
+    for (int y = 0; y < DOWN; y++)
+        for (int x = 0; x < ACROSS; x++)
+            if (out.classes[y][x] == OFC_RELIEF_CONTACT) {
+                const float *n = out.normals[y][x];
+                const double *t = truth[y][x];
+                sum += acos(fmin(1, n[0] * t[0] + n[1] * t[1] + n[2] * t[2]));
+                count++;
+            }
+    assert_true(count > 500);
+    assert_true(out.normals[3][3][2] == 1 && out.uncertainty[3][3] == 0);
+    return sum / count;
+}
+
+static void presses_are_learned(void **state)
+{
+    (void)state;
+    for (int has_center = 0; has_center < 2; has_center++) {
+        memset(&out, PATTERN, sizeof out);
+        press(radius, has_center);
+        assert_int_equal(out.balls.count, 4);
+        assert_int_equal(out.balls.centers, 4 * has_center);
+        assert_int_equal(ofc_rig_solve(&out.rig, &out.balls, &params, &out.model), OFC_STATUS_OK);
+        assert_int_equal(out.model.scale_source, OFC_SCALE_BALL);
+        assert_int_equal(out.model.terms, 18);
+        assert_true(error() < 0.05);
+        for (int y = 0; y < DOWN; y++)
+            assert_true(is_untouched(out.normals[y][ACROSS], sizeof out.normals[y][ACROSS]));
+    }
+    /* Without labels, up to a scale that is set. */
+    const ofc_rig_model with_balls = out.model;
+    out.rig.bend_weight = 0;
+    assert_int_equal(ofc_rig_solve(&out.rig, NULL, &params, &out.model), OFC_STATUS_SCALE_UNKNOWN);
+    assert_int_equal(out.model.scale_source, OFC_SCALE_UNKNOWN);
+    assert_int_equal(out.model.advice, OFC_RIG_ADVICE_SCALE);
+    const double factor = with_balls.tilt / out.model.tilt;
+    assert_int_equal(ofc_rig_set_scale(&out.rig, &out.model, factor, 0.05), OFC_STATUS_OK);
+    assert_int_equal(ofc_rig_solve(&out.rig, NULL, &params, &out.model), OFC_STATUS_OK);
+    assert_int_equal(out.model.scale_source, OFC_SCALE_GIVEN);
+    assert_true(out.model.terms == 3 && out.model.scale_deviation == 0.05);
+    assert_true(error() < 0.05);
+    /* Twice the frames are the same frames. */
+    const ofc_rig once = out.rig;
+    const ofc_rig_balls balls = out.balls;
+    const ofc_rig_model before = out.model;
+    assert_int_equal(ofc_rig_merge(&out.rig, &out.balls, &once, &balls), OFC_STATUS_OK);
+    assert_int_equal(out.rig.frames, 8);
+    assert_int_equal(out.balls.count, 8);
+    assert_int_equal(ofc_rig_solve(&out.rig, NULL, &params, &out.model), OFC_STATUS_OK);
+    assert_true(fabs(out.model.slopes[0] - before.slopes[0]) < 1e-12);
+    params.convexity = OFC_CONVEXITY_HOLLOW;
+    assert_int_equal(ofc_rig_solve(&out.rig, NULL, &params, &out.model), OFC_STATUS_OK);
+    assert_true(fabs(out.model.slopes[0] + before.slopes[0]) < 1e-12);
+    params.convexity = OFC_CONVEXITY_AUTO;
+}
+
+static void what_adds_nothing_has_a_reason(void **state)
+{
+    (void)state;
+    const ofc_image flat = image_of(plane);
+    assert_int_equal(ofc_rig_init(ACROSS, DOWN, &out.rig, &out.balls), OFC_STATUS_OK);
+    const ofc_rig empty = out.rig;
+    memset(&out.classes, PATTERN, sizeof out.classes);
+    assert_int_equal(add(&flat, NULL, 0, NULL), OFC_STATUS_NO_RELIEF);
+    assert_int_equal(out.no_relief, OFC_NO_RELIEF_UNTOUCHED);
+    assert_memory_equal(&out.rig, &empty, sizeof empty);
+    assert_true(is_untouched(out.classes, sizeof out.classes));
+    memset(&out.model, PATTERN, sizeof out.model);
+    assert_int_equal(ofc_rig_solve(&out.rig, &out.balls, &params, &out.model), OFC_STATUS_NO_RELIEF);
+    assert_true(is_untouched(&out.model, sizeof out.model));
+}
+
+static ofc_rig some_rig;
+static ofc_rig_balls some_balls;
+static ofc_rig_model some_model;
+
+/* Nothing is added to a rig by a call that is refused. */
+static ofc_status added(const ofc_image *image)
+{
+    ofc_rig rig = some_rig;
+    const ofc_status status =
+        ofc_rig_add(&rig, NULL, image, NULL, &params, NULL, room, sizeof room, out.classes[0], &out.no_relief);
+    assert_memory_equal(&rig, &some_rig, sizeof rig);
+    return status;
+}
+
+static ofc_status classified(const ofc_image *image)
+{
+    return ofc_rig_classify(&some_model, image, NULL, room, sizeof room, out.classes[0]);
+}
+
+static ofc_status classified_on(const ofc_image *background)
+{
+    const ofc_image image = image_of(frame);
+    return background == NULL
+               ? OFC_STATUS_NULL_POINTER
+               : ofc_rig_classify(&some_model, &image, background, room, sizeof room, out.classes[0]);
+}
+
+static ofc_status normals_of(const ofc_image *image)
+{
+    static uint8_t classes[DOWN][ACROSS];
+    return ofc_rig_normals(&some_model, image, NULL, classes[0], out.normals[0][0], sizeof out.normals[0], NULL, 0);
+}
+
+static void bad_arguments(void **state)
+{
+    (void)state;
+    press(radius, 0);
+    assert_int_equal(ofc_rig_solve(&out.rig, &out.balls, &params, &out.model), OFC_STATUS_OK);
+    some_rig = out.rig;
+    some_balls = out.balls;
+    some_model = out.model;
+    refuses_bad_images(added, &out, sizeof out);
+    refuses_bad_images(classified, &out, sizeof out);
+    refuses_bad_images(classified_on, &out, sizeof out);
+    refuses_bad_images(normals_of, &out, sizeof out);
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_init(ACROSS, DOWN, NULL, &out.balls));
+    REFUSED(OFC_STATUS_EMPTY, out, ofc_rig_init(0, DOWN, &out.rig, &out.balls));
+    REFUSED(OFC_STATUS_EMPTY, out, ofc_rig_init(ACROSS, 31, &out.rig, NULL));
+    REFUSED(OFC_STATUS_TOO_LARGE, out, ofc_rig_init(INT32_MAX, INT32_MAX, &out.rig, NULL));
+    REFUSED(OFC_STATUS_MISALIGNED, out, ofc_rig_init(ACROSS, DOWN, MISALIGNED(&out.rig), NULL));
+    REFUSED(OFC_STATUS_OVERLAP, out, ofc_rig_init(ACROSS, DOWN, &out.rig, (ofc_rig_balls *)(void *)&out.rig));
+    const ofc_image image = image_of(frame);
+    ofc_image smaller = image;
+    smaller.height--;
+    ofc_rig rig = some_rig;
+    ofc_rig_balls balls = some_balls;
+    ofc_relief_params ball = params;
+    ball.ball_radius = radius;
+    const double center[2] = {78, 60}, no_center[2] = {(double)NAN, 60};
+#define ADD(rig, balls, image, params, center, room, bytes)                                                            \
+    ofc_rig_add(rig, balls, image, NULL, params, center, room, bytes, out.classes[0], &out.no_relief)
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ADD(NULL, NULL, &image, &params, NULL, room, sizeof room));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ADD(&rig, NULL, &image, NULL, NULL, room, sizeof room));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ADD(&rig, NULL, &image, &params, NULL, NULL, sizeof room));
+    REFUSED(OFC_STATUS_WORKSPACE_TOO_SMALL, out, ADD(&rig, NULL, &image, &params, NULL, room, sizeof room - 1));
+    REFUSED(OFC_STATUS_MISALIGNED, out, ADD(&rig, NULL, &image, &params, NULL, MISALIGNED(room), sizeof room));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ADD(&rig, NULL, &smaller, &params, NULL, room, sizeof room));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ADD(&rig, NULL, &image, &ball, NULL, room, sizeof room));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ADD(&rig, &balls, &image, &params, center, room, sizeof room));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ADD(&rig, &balls, &image, &ball, no_center, room, sizeof room));
+    ball.ball_radius = (double)INFINITY;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ADD(&rig, &balls, &image, &ball, NULL, room, sizeof room));
+    rig.energy[4] = (double)NAN;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ADD(&rig, NULL, &image, &params, NULL, room, sizeof room));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rig_solve(&rig, NULL, &params, &out.model));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rig_merge(&rig, NULL, &some_rig, NULL));
+    rig = some_rig;
+    balls.sides[100] = (double)INFINITY;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rig_solve(&rig, &balls, &params, &out.model));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rig_merge(&rig, &balls, &some_rig, &some_balls));
+    balls = some_balls;
+    REFUSED(OFC_STATUS_OVERLAP, out, ofc_rig_merge(&rig, NULL, &rig, NULL));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_merge(&rig, NULL, &some_rig, &some_balls));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_merge(&rig, NULL, NULL, NULL));
+    ofc_rig other = some_rig;
+    other.width = ACROSS + 1;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rig_merge(&rig, NULL, &other, NULL));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_solve(NULL, NULL, &params, &out.model));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_solve(&rig, NULL, NULL, &out.model));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_solve(&rig, NULL, &params, NULL));
+    const double factors[] = {0, -1, (double)NAN, (double)INFINITY};
+    for (int i = 0; i < 4; i++)
+        REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rig_set_scale(&rig, &some_model, factors[i], 0.1));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_rig_set_scale(&rig, &some_model, 1, -0.1));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_set_scale(NULL, &some_model, 1, 0.1));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_set_scale(&rig, NULL, 1, 0.1));
+    assert_memory_equal(&rig, &some_rig, sizeof rig);
+    assert_memory_equal(&balls, &some_balls, sizeof balls);
+}
+
+static void bad_models(void **state)
+{
+    (void)state;
+    const ofc_image image = image_of(frame);
+    static uint8_t classes[DOWN][ACROSS];
+    ofc_rig_model bad = some_model;
+#define CLASSIFY(model) ofc_rig_classify(model, &image, NULL, room, sizeof room, out.classes[0])
+#define NORMALS(model, classes, normals, stride, deviations, other)                                                    \
+    ofc_rig_normals(model, &image, NULL, classes, normals, stride, deviations, other)
+    const size_t stride = sizeof out.normals[0], other = sizeof out.uncertainty[0];
+    float *normals = out.normals[0][0], *deviations = out.uncertainty[0];
+    bad.terms = 0;
+    REFUSED(OFC_STATUS_NOT_SOLVED, out, CLASSIFY(&bad));
+    REFUSED(OFC_STATUS_NOT_SOLVED, out, NORMALS(&bad, classes[0], normals, stride, NULL, 0));
+    bad.terms = 4;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, CLASSIFY(&bad));
+    bad = some_model;
+    bad.slopes[107] = (double)NAN;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, CLASSIFY(&bad));
+    bad = some_model;
+    bad.noise[1] = -1;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, NORMALS(&bad, classes[0], normals, stride, NULL, 0));
+    bad = some_model;
+    bad.height = DOWN - 1;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, CLASSIFY(&bad));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, NORMALS(&bad, classes[0], normals, stride, NULL, 0));
+    bad = some_model;
+    bad.advice = 77;
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, CLASSIFY(&bad));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, CLASSIFY(NULL));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_classify(&some_model, &image, NULL, room, sizeof room, NULL));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_classify(&some_model, &image, NULL, NULL, sizeof room, out.classes[0]));
+    REFUSED(OFC_STATUS_WORKSPACE_TOO_SMALL, out,
+            ofc_rig_classify(&some_model, &image, NULL, room, sizeof room - 1, out.classes[0]));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, NORMALS(NULL, classes[0], normals, stride, deviations, other));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, NORMALS(&some_model, NULL, normals, stride, deviations, other));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, NORMALS(&some_model, classes[0], NULL, stride, deviations, other));
+    REFUSED(OFC_STATUS_STRIDE_TOO_SMALL, out, NORMALS(&some_model, classes[0], normals, 4, deviations, other));
+    REFUSED(OFC_STATUS_STRIDE_TOO_SMALL, out, NORMALS(&some_model, classes[0], normals, stride, deviations, 4));
+    REFUSED(OFC_STATUS_OVERLAP, out, NORMALS(&some_model, classes[0], normals, stride, normals, other));
+    assert_int_equal(NORMALS(&some_model, classes[0], normals, stride, NULL, 0), OFC_STATUS_OK);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(presses_are_learned), cmocka_unit_test(what_adds_nothing_has_a_reason),
+        cmocka_unit_test(bad_arguments),       cmocka_unit_test(bad_models),
+    };
+    return cmocka_run_group_tests(tests, prepare, NULL);
+}
