@@ -14,13 +14,13 @@ from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 
 import orientation_from_color as ofc
 
-INCLUDE = Path(__file__).parents[1] / "include"
+ROOT = Path(__file__).parents[1]
 matplotlib.use("Agg")
 
 
 def evaluate_c(example):
     """Strictly, but not linked: what the board has is the reader's."""
-    command = ["gcc", "-xc", "-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", f"-I{INCLUDE}", "-c", "-o", os.devnull, "-"]
+    command = ["gcc", "-xc", "-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", f"-I{ROOT / 'include'}", "-c", "-o", os.devnull, "-"]
     subprocess.run(command, input=example.parsed.encode(), check=True)
 
 
@@ -28,6 +28,24 @@ def evaluate_sh(example):
     """With the python that runs this."""
     path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
     subprocess.run(["bash", "-eu", "-c", example.parsed], env={**os.environ, "PATH": path}, check=True)
+
+
+def evaluate_rust(example):
+    """A program with the crates that its first line adds: it makes a normal map of photo.png."""
+    project = ROOT / "target/docs/rust"
+    (project / "src").mkdir(parents=True, exist_ok=True)
+    (project / "src/main.rs").write_text(example.parsed)
+    if not (project / "Cargo.toml").exists():
+        (project / "Cargo.toml").write_text('[package]\nname = "normals"\nedition = "2024"\n\n[workspace]\n')
+        add = ["cargo", "add", "--quiet", f"--manifest-path={project / 'Cargo.toml'}"]
+        subprocess.run([*add, f"--path={ROOT / 'ofc-core'}"], check=True)
+        subprocess.run([*add, "image", "--no-default-features", "--features=png"], check=True)
+    cargo = ["cargo", "run", "--quiet", f"--manifest-path={project / 'Cargo.toml'}"]
+    subprocess.run([*cargo, "photo.png", "rust.png"], check=True, env={**os.environ, "CARGO_TARGET_DIR": str(ROOT / "target/docs/cargo")})
+    solution = ofc.solve(cv2.imread("photo.png"), channels="bgr")
+    known = solution.inliers
+    difference = ofc.normal_map(solution.normals())[known].astype(int) - cv2.imread("rust.png")[..., ::-1][known]
+    assert np.abs(difference).max() <= 1
 
 
 @pytest.fixture(scope="module")
@@ -67,9 +85,10 @@ def pictures(tmp_path_factory):
 pytest_collect_file = Sybil(
     parsers=[
         PythonCodeBlockParser(),
+        CodeBlockParser(language="rust", evaluator=evaluate_rust),
         CodeBlockParser(language="c", evaluator=evaluate_c),
         CodeBlockParser(language="sh", evaluator=evaluate_sh),
     ],
-    pattern="guide/*.md",
+    patterns=["guide/*.md", "reference/*.md"],
     fixtures=["pictures"],
 ).pytest()

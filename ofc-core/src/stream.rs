@@ -37,6 +37,31 @@ use crate::math::arena::Need;
 use crate::picture::{Image, PixelCounts};
 
 /// A stream: its state over its buffers.
+///
+/// # Example
+/// ```
+/// use ofc_core::light::constrained_slant::WORKSPACE_LEN;
+/// use ofc_core::stream::{Memory, Params, Pass, State, Stream, places_len, values_len};
+/// use ofc_core::{Image, Order, Sample};
+///
+/// let (width, height, params) = (64, 48, Params::default());
+/// let (sample, method) = (params.solve.lmeds.sample_size, params.solve.orientation_method);
+/// let mut boxes = vec![0.0; WORKSPACE_LEN];
+/// let mut values = vec![0.0; values_len(width, height, sample, method)];
+/// let mut places = vec![0; places_len(width, height, sample)];
+/// let mut state = State::new(width, height, Sample::U8, params).unwrap();
+/// let memory = Memory { boxes: &mut boxes, values: &mut values, places: &mut places };
+/// let mut stream = Stream::new(&mut state, memory).unwrap();
+///
+/// // A camera that sees a plane: the frame ends without F, and the next one is for colors again.
+/// let row = vec![90_u8; 3 * width];
+/// let image = Image::interleaved(&row, width, 1, 3 * width, Sample::U8, Order::Rgb).unwrap();
+/// assert_eq!(stream.begin(), Ok(Pass::Colors));
+/// for y in 0..height {
+///     stream.row(y, &image).unwrap();
+/// }
+/// assert_eq!(stream.end(), Ok(Pass::Colors));
+/// ```
 #[derive(Debug)]
 pub struct Stream<'m> {
     state: &'m mut State,

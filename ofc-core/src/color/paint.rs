@@ -157,6 +157,20 @@ const _: () = assert!(hues::LEN <= WORKSPACE_LEN);
 ///
 /// # Scratch
 /// [`WORKSPACE_LEN`] `f32` in `workspace`; three passes over the picture and at most 400,000 reads of a few pixels. Below 8 KiB of stack.
+///
+/// # Example
+/// A plane does not determine C, whatever its paint:
+/// ```
+/// use ofc_core::color::paint::{Params, Verdict, WORKSPACE_LEN, estimate};
+/// use ofc_core::picture::Usable;
+/// use ofc_core::{Image, Order, Sample};
+///
+/// let painted: Vec<u8> = (0..40 * 40).flat_map(|i| [60, 80, 100].map(|c| c + (i % 40) as u8)).collect();
+/// let image = Image::interleaved(&painted, 40, 40, 3 * 40, Sample::U8, Order::Rgb).unwrap();
+/// let usable = Usable::below(Sample::U8.saturation());
+/// let paint = estimate(&image, usable, &Params::default(), &mut vec![0.0; WORKSPACE_LEN]).unwrap();
+/// assert_ne!(paint.verdict, Verdict::Smooth);
+/// ```
 pub fn estimate(
     image: &Image,
     usable: Usable,

@@ -98,6 +98,21 @@ pub const fn colors_len(pixels: usize) -> usize {
 ///
 /// # Scratch
 /// `colors` and `queue`; what they hold before does not matter. About 10 KiB of stack.
+///
+/// # Example
+/// A picture of one gray has no region: its pixels agree on no one ellipsoid.
+/// ```
+/// use ofc_core::color::segment::{Params, colors_len, segment};
+/// use ofc_core::picture::Usable;
+/// use ofc_core::{Image, Order, Sample};
+///
+/// let gray = [90_u8; 3 * 32 * 32];
+/// let image = Image::interleaved(&gray, 32, 32, 3 * 32, Sample::U8, Order::Rgb).unwrap();
+/// let (mut labels, mut colors, mut queue) = ([0; 32 * 32], vec![0.0; colors_len(32 * 32)], [0; 32 * 32]);
+/// let usable = Usable::below(Sample::U8.saturation());
+/// let regions = segment(&image, usable, &Params::default(), &mut labels, &mut colors, &mut queue).unwrap();
+/// assert!(regions.is_empty());
+/// ```
 pub fn segment(
     image: &Image,
     usable: Usable,

@@ -56,6 +56,20 @@ impl core::error::Error for FlatFieldError {}
 ///
 /// # Errors
 /// See [`FlatFieldError`]; `pixels` is untouched then.
+///
+/// # Example
+/// ```
+/// use ofc_core::picture::flat_field::divide;
+/// use ofc_core::{Image, Order, Sample};
+///
+/// // Light that falls off to the right, on a plane and on the same plane a tenth darker.
+/// let plane: Vec<u8> = (0..8 * 8).flat_map(|i| [200 - 10 * (i % 8) as u8; 3]).collect();
+/// let darker: Vec<u8> = plane.iter().map(|&v| v / 10 * 9).collect();
+/// let view = |bytes| Image::interleaved(bytes, 8, 8, 24, Sample::U8, Order::Rgb).unwrap();
+/// let mut even = [0.0; 3 * 8 * 8];
+/// let done = divide(&view(&darker), &view(&plane), &mut even, 24).unwrap();
+/// assert!(even.iter().all(|&v| (f64::from(v) / done.mean[0] - 0.9).abs() < 1e-6));
+/// ```
 pub fn divide(
     image: &Image,
     background: &Image,

@@ -13,6 +13,19 @@ use super::window::{WINDOW, Window, first_bits};
 ///
 /// # Shape
 /// `width` x `height`, row 0 at the top.
+///
+/// # Example
+/// A region of interest of a larger picture, in OpenCV's order, and three gray pictures as one:
+/// ```
+/// use ofc_core::{Image, Order, Sample};
+///
+/// let (width, height, large) = (64, 48, vec![0_u8; 3 * 640 * 480]);
+/// let region = Image::interleaved(&large[3 * (100 * 640 + 50)..], width, height, 3 * 640, Sample::U8, Order::Bgr).unwrap();
+/// assert_eq!((region.width(), region.height()), (64, 48));
+///
+/// let gray = vec![0_u8; 64 * 48];
+/// assert!(Image::planes([&gray, &gray, &gray], width, height, width, Sample::U8).is_ok());
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Image<'a> {
     channels: [&'a [u8]; 3],
