@@ -142,18 +142,23 @@ def test_uneven_paint_is_divided_out() -> None:
     assert gray.value.status > 0
 
 
-def test_a_relief_on_a_plane() -> None:
-    # A ball of radius 40 pixels in a gel that comes up in a parabola around it.
+def press(x0: float, y0: float, seed: int = 0) -> tuple[ofc.Rendering, ofc.Rendering]:
+    """A ball of radius 40 pixels in a gel that comes up in a parabola around it, and the gel untouched."""
     y, x = np.mgrid[0:180, 0:240]
-    d, edge, skirt = np.hypot(x - 130.5, y - 80.5), 26.0, 12.0
+    d, edge, skirt = np.hypot(x - x0, y - y0), 26.0, 12.0
     steepest = edge / np.sqrt(40**2 - edge**2)
     inside = np.sqrt(np.maximum(40.0**2 - d**2, 0)) - np.sqrt(40**2 - edge**2) + steepest * skirt / 2
     outside = steepest * np.maximum(skirt - (d - edge), 0) ** 2 / (2 * skirt)
     depth = np.where(d < edge, inside, outside).astype(np.float32)
     directions = LIGHTS / np.linalg.norm(LIGHTS, axis=1, keepdims=True)
-    scene = ofc.render(depth, directions, COLORS, params=ofc.RenderParams(noise=0.7, peak=200, cast_shadows=False))
+    scene = ofc.render(depth, directions, COLORS, params=ofc.RenderParams(noise=0.7, peak=200, seed=seed, cast_shadows=False))
     gray = scene.scale * ofc.render(0 * depth, directions, COLORS).largest_modulus
-    untouched = ofc.render(0 * depth, directions, COLORS, params=ofc.RenderParams(noise=0.7, peak=gray, seed=1))
+    untouched = ofc.render(0 * depth, directions, COLORS, params=ofc.RenderParams(noise=0.7, peak=gray, seed=99))
+    return scene, untouched
+
+
+def test_a_relief_on_a_plane() -> None:
+    scene, untouched = press(130.5, 80.5)
     relief = ofc.solve_relief(scene.pixels, params=ofc.ReliefParams(ball_radius=40))
     contact = relief.classes == ofc.ReliefClass.CONTACT
     assert contact[80, 150]
@@ -171,6 +176,39 @@ def test_a_relief_on_a_plane() -> None:
         ofc.solve_relief(untouched.pixels)
     assert isinstance(flat.value.result, ofc.Relief)
     assert flat.value.result.reason is ofc.NoRelief.UNTOUCHED
+
+
+def test_frames_of_a_rig_add_up() -> None:
+    places = [(60.5, 60.5), (180.5, 60.5), (120.5, 90.5), (60.5, 120.5), (180.5, 120.5)]
+    presses = [press(x, y, seed)[0] for seed, (x, y) in enumerate(places)]
+    one, other = ofc.Rig(240, 180), ofc.Rig(240, 180)
+    for scene in presses[:3]:
+        assert one.add(scene.pixels) is ofc.NoRelief.NONE
+    for scene in presses[3:]:
+        assert other.add(scene.pixels) is ofc.NoRelief.NONE
+    assert other.add(press(60.5, 60.5)[1].pixels) is ofc.NoRelief.UNTOUCHED
+    one.merge(pickle.loads(pickle.dumps(other)))
+    assert (one.frames, one.balls) == (5, 0)
+    without_balls = one.solve()
+    assert without_balls.terms == 3
+    assert one.add(presses[2].pixels, center=places[2], params=ofc.ReliefParams(ball_radius=40)) is ofc.NoRelief.NONE
+    model = one.solve()
+    assert model.balls == 1
+    assert model.scale_source is ofc.Scale.BALL
+    assert "5 frames" in repr(without_balls)
+    frame = presses[0]
+    classes = model.classify(frame.pixels)
+    contact = classes == ofc.ReliefClass.CONTACT
+    sigma = np.empty(contact.shape, np.float32)
+    normals = model.normals(frame.pixels, classes=classes, uncertainty=sigma)
+    assert (model.normals(frame.pixels) == normals)[contact].all()
+    assert np.median(angles(normals * contact[..., None], frame.normals)) < 6
+    assert (sigma[contact] > 0).all()
+    one.set_scale(model, 1.1, 0.05)
+    with pytest.raises(ofc.Refused):
+        ofc.Rig(240, 180).solve()
+    with pytest.raises(ofc.Error):
+        one.add(frame.pixels[1:])
 
 
 def test_two_materials_are_two_regions() -> None:

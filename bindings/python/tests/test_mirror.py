@@ -20,7 +20,6 @@ SOURCES = "".join(path.read_text(encoding="utf-8") for path in Path(ofc.__file__
 
 # Not wrapped, and why.
 A_STAGE = "a stage of ofc_solve(), whose Solution has what it finds"
-A_RIG = "rigs are not wrapped yet"
 LEFT_OUT = {
     "ofc_version": "ofc_version_string() is __version__",
     "ofc_segment_mark": "labels == label is the same mask",
@@ -56,13 +55,6 @@ LEFT_OUT = {
     "ofc_orthogonal_annealing": A_STAGE,
     "ofc_constrained_slants_integrable_workspace_size": A_STAGE,
     "ofc_constrained_slants_integrable": A_STAGE,
-    "ofc_rig_init": A_RIG,
-    "ofc_rig_add": A_RIG,
-    "ofc_rig_merge": A_RIG,
-    "ofc_rig_set_scale": A_RIG,
-    "ofc_rig_solve": A_RIG,
-    "ofc_rig_classify": A_RIG,
-    "ofc_rig_normals": A_RIG,
 }
 
 
@@ -95,6 +87,7 @@ STRUCTS: dict[str, type] = {
     "ofc_paint": ofc.Paint,
     "ofc_relief": ofc.Relief,
     "ofc_region": ofc.Region,
+    "ofc_rig_model": ofc.RigModel,
     "ofc_rendering": ofc.Rendering,
     "ofc_stream_drift": ofc.Drift,
     "ofc_lmeds_params": ofc.LmedsParams,
@@ -142,6 +135,7 @@ PREFIXES: dict[type[enum.IntEnum], str] = {
     enums.Scale: "SCALE",
     enums.NoRelief: "NO_RELIEF",
     enums.ReliefClass: "RELIEF",
+    enums.RigAdvice: "RIG_ADVICE",
     enums.Pass: "PASS",
 }
 # Other constants with one of these prefixes.

@@ -1,4 +1,6 @@
-"""Orientation from color: surface normals from one RGB picture of a uniformly colored matte surface under unknown colored lights::
+"""Orientation from color: surface normals from one RGB picture of a uniformly colored matte surface under unknown colored lights.
+
+::
 
     import orientation_from_color as ofc
 
@@ -26,6 +28,7 @@ from .enums import (
     Pass,
     Reason,
     ReliefClass,
+    RigAdvice,
     Scale,
     ShadowRejection,
     Slants,
@@ -50,6 +53,7 @@ from .picture import Picture
 from .plot import normal_map
 from .relief import Relief, solve_relief
 from .rendering import Rendering, render
+from .rig import Rig, RigModel
 from .segmentation import Region, Segmentation, classify_patches, segment
 from .solution import Solution, normals_from_matrix, pixel_counts, solve
 from .stages import Check, Covariance, PixelCounts
@@ -89,6 +93,9 @@ __all__ = [
     "ReliefParams",
     "RenderParams",
     "Rendering",
+    "Rig",
+    "RigAdvice",
+    "RigModel",
     "Scale",
     "SegmentParams",
     "Segmentation",

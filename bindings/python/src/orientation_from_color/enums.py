@@ -210,6 +210,15 @@ class NoRelief(enum.IntEnum):
     EDGE = 5
 
 
+class RigAdvice(enum.IntEnum):
+    """What would make a rig's model better, most."""
+
+    NONE = 0
+    CONTACTS = 1
+    SCALE = 2
+    REGION = 3
+
+
 class ReliefClass(enum.IntEnum):
     """What a pixel of a relief is part of."""
 

@@ -82,7 +82,7 @@ class Relief(Report):
         _abi.check(
             lib.ofc_relief_normals(
                 self.picture.struct,
-                _struct(self.background),
+                struct_of(self.background),
                 self.struct,
                 _abi.pointer("uint8_t *", self.classes),
                 _abi.pointer("float *", out),
@@ -155,7 +155,7 @@ def solve_relief(
     status = Status(
         lib.ofc_relief_solve(
             picture.struct,
-            _struct(plane),
+            struct_of(plane),
             given,
             _abi.pointer("void *", memory),
             need,
@@ -171,5 +171,6 @@ def solve_relief(
     return relief
 
 
-def _struct(picture: Picture | None) -> Any:
+def struct_of(picture: Picture | None) -> Any:
+    """C's view of a picture that may not be there."""
     return ffi.NULL if picture is None else picture.struct
