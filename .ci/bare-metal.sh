@@ -62,7 +62,7 @@ rust_packages() {
 # build_archive NAME TRIPLE FLAGS [FEATURE]: libofc.a by the profile `firmware`, with these flags for rustc, for `target` and
 # `tools`. Sets `archive` to its path, and `raw` to that of the one from cargo.
 build_archive() {
-    local name=$1 triple=$2 flags=$3 features=${4-} sysroot folder=target/bare/$1
+    local name=$1 triple=$2 flags=$3 features=${4-} sysroot folder=target/bare/$1${4:+-$4}
     local build=(cargo rustc --quiet --profile firmware -p ofc-ffi --lib --crate-type staticlib
         --no-default-features --features "$features" --target "$triple" --target-dir "$folder")
     sysroot=$(rustc --print sysroot)

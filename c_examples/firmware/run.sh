@@ -1,22 +1,20 @@
 #!/usr/bin/env bash
-# Builds the firmware for each board, runs it under QEMU, and prints what it says and what it takes. run.sh --write also
-# puts the table of figures into README.md. Fails where a budget is exceeded, or where the image holds what panics.
-# Installs the Debian packages it lacks as root or with sudo. Can be run again.
+# Builds the firmware for each board, runs it under QEMU, and prints what it says and what it takes; as many boards at once
+# as there are processors. run.sh BOARD[+FEATURE]... does it for these alone; run.sh --write also puts the table of figures
+# into README.md. Fails where a budget is exceeded, or where the image holds what panics. Installs the Debian packages it
+# lacks as root or with sudo. Can be run again.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 # shellcheck source-path=SCRIPTDIR source=../../.ci/packages.sh
 . .ci/packages.sh
 # shellcheck source-path=SCRIPTDIR source=../../.ci/bare-metal.sh
 . .ci/bare-metal.sh
-need_cargo
-mapfile -t rust < <(rust_packages thumbv7em-none-eabihf riscv32imafc-unknown-none-elf)
-install_packages "${board_packages[@]}" "${rust[@]}"
-
 here=c_examples/firmware
 out=target/firmware
-table=$out/table.md
 mkdir -p "$out"
 exceeded=()
+# A board, and a feature of the library after a plus.
+programs=(cortex-m7 cortex-m4f riscv32 cortex-m7+full-streams)
 
 # section FILE NAME...: the bytes of these sections.
 section() {
@@ -76,52 +74,66 @@ budget() {
     [ "$2" -le "$3" ] || exceeded+=("$1 $2 above $3")
 }
 
-{
-    echo "| | flash | RAM | stack in a call | stack | rendering | cold solve | normals | warm frame |"
-    echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
-} >"$table"
-
-# measure NAME [FEATURE]: builds and runs the firmware for this board with a feature of the library, and adds its row.
+# measure BOARD[+FEATURE]: builds and runs the firmware, and writes its row of the table.
 measure() {
-    local name=$1 program=$out/$1${2:+-$2} flash ram stack row stage
+    local name=${1%%+*} feature="" program=$out/$1 flash ram stack row stage
+    [ "$name" = "$1" ] || feature=${1#*+}
     board "$name"
-    build_archive "$name" "$triple" "$flags" "${2-}"
+    build_archive "$name" "$triple" "$flags" "$feature"
     "${compiler[@]}" -Oz "$here"/{main,scene,print}.c "${start[@]}" "$archive" -lgcc -o "$program.elf"
     cannot_panic "$program.elf"
     calls_are_known "$program.elf"
-    echo "== $name${2:+, $2}"
+    echo "== $1"
     emulate "$program.elf" -icount shift=0 | tee "$program.txt"
     flash=$(section "$program.elf" .text .rodata .data)
     ram=$(section "$program.elf" .data .bss)
     stack=$(said "$program.txt" stack call)
-    row="| $name${2:+, \`$2\`} | $flash | $ram | $stack | $(said "$program.txt" stack program)"
+    row="| $name${feature:+, \`$feature\`} | $flash | $ram | $stack | $(said "$program.txt" stack program)"
     for stage in render cold normals warm; do
         row+=" | $(said "$program.txt" instructions $stage)"
     done
-    echo "$row |" >>"$table"
-    if [ "$program" = "$out/cortex-m7" ]; then
+    echo "$row |" >"$program.row"
+    if [ "$1" = cortex-m7 ]; then
         budget "flash" "$flash" 65536
         budget "RAM" "$ram" 65536
         budget "stack in a call" "$stack" 4096
         budget "cold solve" "$(said "$program.txt" instructions cold)" 100000000
         budget "warm frame" "$(said "$program.txt" instructions warm)" 8000000
     fi
+    if [ ${#exceeded[@]} -gt 0 ]; then
+        printf 'over budget: %s\n' "${exceeded[@]}" >&2
+        exit 1
+    fi
 }
 
-for name in cortex-m7 cortex-m4f riscv32; do
-    measure "$name"
-done
-measure cortex-m7 full-streams
-echo
-cat "$table"
+case ${1-} in
+--one)
+    measure "$2"
+    exit
+    ;;
+'' | --write) ;;
+*) programs=("$@") ;;
+esac
+need_cargo
+mapfile -t rust < <(rust_packages thumbv7em-none-eabihf riscv32imafc-unknown-none-elf)
+install_packages "${board_packages[@]}" "${rust[@]}"
+
+# A board's output in one piece.
+# shellcheck disable=SC2016 # it is for the shell that xargs starts
+printf '%s\n' "${programs[@]}" | xargs -P "$(nproc)" -I{} bash -c \
+    'status=0; "$0" --one {} >"$1/{}.said" 2>&1 || status=1; cat "$1/{}.said"; exit $status' "$here/run.sh" "$out"
+table=$out/table.md
+{
+    echo "| | flash | RAM | stack in a call | stack | rendering | cold solve | normals | warm frame |"
+    echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
+    for program in "${programs[@]}"; do
+        cat "$out/$program.row"
+    done
+} | tee "$table"
 if [ "${1-}" = --write ]; then
     awk -v table="$table" '
         /^<!-- table -->/ { print; while ((getline line < table) > 0) print line; skip = 1 }
         /^<!-- end -->/ { skip = 0 }
         !skip && !/^<!-- table -->/ { print }' "$here/README.md" >"$out/README.md"
     cp "$out/README.md" "$here/README.md"
-fi
-if [ ${#exceeded[@]} -gt 0 ]; then
-    printf 'over budget: %s\n' "${exceeded[@]}" >&2
-    exit 1
 fi
