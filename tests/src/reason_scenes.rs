@@ -46,19 +46,28 @@ fn scaled(colors: &[[f64; 3]], gain: f64) -> Vec<[f64; 3]> {
 }
 
 /// What is drawn of a scene: its numbers come from one generator.
-pub struct Draw(pub Rng);
+pub struct Draw {
+    rng: Rng,
+    magnification: usize,
+}
 
 impl Draw {
+    /// Of small pictures, or of ones that are so many times as wide and high.
+    #[must_use]
+    pub const fn new(seed: u64, magnification: usize) -> Self {
+        Self { rng: Rng::new(seed), magnification }
+    }
+
     fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.0.unit()
+        low + (high - low) * self.rng.unit()
     }
 
     fn chance(&mut self, of: f64) -> bool {
-        self.0.unit() < of
+        self.rng.unit() < of
     }
 
     fn size(&mut self) -> [usize; 2] {
-        [0; 2].map(|_| 64 + self.0.below(41) as usize)
+        [0; 2].map(|_| self.magnification * (64 + self.rng.below(41) as usize))
     }
 
     /// Three lights around the object, none in the plane of the other two, one mostly red, one green, one blue.
@@ -126,7 +135,7 @@ impl Draw {
         for color in colors {
             let is_lit = color.iter().any(|&value| value > 0.0);
             for value in color {
-                let noisy = if is_lit { value + noise * normal(&mut self.0) } else { 0.0 };
+                let noisy = if is_lit { value + noise * normal(&mut self.rng) } else { 0.0 };
                 #[expect(clippy::cast_sign_loss, reason = "it is clamped")]
                 bytes.push(noisy.round().clamp(0.0, 255.0) as u8);
             }
@@ -176,7 +185,7 @@ impl Draw {
         let mut largest: Vec<f64> =
             colors.iter().map(|c| c[0].max(c[1]).max(c[2])).filter(|&value| value > 0.0).collect();
         largest.sort_by(f64::total_cmp);
-        let percent = 2 + self.0.below(39) as usize;
+        let percent = 2 + self.rng.below(39) as usize;
         let gain = 255.0 / largest[largest.len() * percent / 100];
         let noise = self.noise();
         self.taken(size, &scaled(&colors, gain), noise, None)
@@ -197,8 +206,8 @@ impl Draw {
     pub fn masked_away(&mut self) -> Scene {
         let mut scene = self.good();
         let mut mask = vec![0; scene.width * scene.height];
-        for _ in 0..self.0.below(10) {
-            let at = self.0.below(mask.len() as u32) as usize;
+        for _ in 0..self.rng.below(10) {
+            let at = self.rng.below(mask.len() as u32) as usize;
             mask[at] = 255;
         }
         scene.mask = Some(mask);
@@ -213,7 +222,7 @@ impl Draw {
         let mut colors = self.lit(size, &lights, &surface);
         let mask =
             colors.iter().map(|color| if color[0] + color[1] + color[2] > 0.0 { 0 } else { 255 }).collect();
-        let background = match self.0.below(3) {
+        let background = match self.rng.below(3) {
             0 => [0.0; 3],
             1 => [0; 3].map(|_| self.within(1.0, 12.0)),
             _ => [0; 3].map(|_| self.within(60.0, 220.0)),
@@ -266,7 +275,7 @@ impl Draw {
         let (lights, closes) = (self.lights(), self.chance(0.5));
         let surface = self.surface(size, closes);
         let mut colors = self.lit(size, &lights, &surface);
-        let channel = self.0.below(3) as usize;
+        let channel = self.rng.below(3) as usize;
         let level = if self.chance(0.5) { 0.0 } else { self.within(1.0, 60.0) };
         for color in colors.iter_mut().filter(|color| color[0] + color[1] + color[2] > 0.0) {
             color[channel] = level;
@@ -298,7 +307,7 @@ impl Draw {
             [self.within(0.0, 0.4), 1.0],
             [self.within(0.2, 0.8), self.within(0.2, 0.8)],
         ];
-        own.rotate_left(self.0.below(3) as usize);
+        own.rotate_left(self.rng.below(3) as usize);
         let [first, second, _] = lights;
         let lights = [(first.0, own.map(|m| m[0])), (second.0, own.map(|m| m[1]))];
         let colors = self.lit(size, &lights, &surface);
@@ -313,7 +322,7 @@ impl Draw {
         let surface = self.surface(size, closes);
         let tilt = self.within(0.0, 360.0);
         let mut slants = [self.within(-45.0, -30.0), self.within(-8.0, 8.0), self.within(30.0, 45.0)];
-        let middle = self.0.below(3) as usize;
+        let middle = self.rng.below(3) as usize;
         slants.swap(1, middle);
         let out_of_plane = self.within(2.0, 3.5);
         let colors = [0, 1, 2].map(|i| [0, 1, 2].map(|c| if c == i { 1.0 } else { 0.0 }));
@@ -428,7 +437,7 @@ impl Draw {
     pub fn not_finite(&mut self) -> Scene {
         let size = self.size();
         let nothing = if self.chance(0.5) { f32::NAN } else { f32::INFINITY };
-        let numbers = self.0.below(9);
+        let numbers = self.rng.below(9);
         let count = size[0] * size[1];
         let bytes = (0..3 * count)
             .flat_map(|i| if i < 3 * numbers as usize { 100.0 } else { nothing }.to_ne_bytes())
@@ -438,7 +447,7 @@ impl Draw {
 
     /// A picture of a few pixels.
     pub fn tiny(&mut self) -> Scene {
-        let [width, height] = [1 + self.0.below(3) as usize, 1 + self.0.below(3) as usize];
+        let [width, height] = [1 + self.rng.below(3) as usize, 1 + self.rng.below(3) as usize];
         let colors: Vec<_> = (0..width * height).map(|_| [0; 3].map(|_| self.within(20.0, 200.0))).collect();
         self.taken([width, height], &colors, 1.0, None)
     }

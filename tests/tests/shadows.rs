@@ -1,7 +1,6 @@
 //! Colors that one of the lights does not reach.
 
-use ofc_core::picture::Faces;
-use ofc_core::picture::{Image, Order, Sample};
+use ofc_core::picture::{Faces, Image, Order, PixelCounts, Sample};
 use ofc_core::render::{self, Canvas, Lights, Outputs, render};
 use ofc_core::solve::{OrientationMethod, Outcome, Params, ShadowRejection, Solution, solve, workspace_len};
 use ofc_tests::depth_maps::{Relief, direction, peaks, sphere};
@@ -15,9 +14,11 @@ fn picture(relief: &Relief, slants: [f64; 3], noise: f64) -> Vec<u8> {
         *row = direction([slants[light], 20.0 + 120.0 * light as f64]);
     }
     let bytes = relief.bytes();
-    let mut pixels = vec![0; SIZE * SIZE * 3];
+    let mut pixels = vec![0; relief.mask.len() * 3];
     let params = render::Params { noise, seed: 3, ..render::Params::default() };
-    let picture = Canvas::new(&mut pixels, SIZE, SIZE, SIZE * 3, Sample::U8, Order::Rgb).unwrap();
+    let picture =
+        Canvas::new(&mut pixels, relief.width, relief.height, relief.width * 3, Sample::U8, Order::Rgb)
+            .unwrap();
     let lights = Lights::new(&a, &COLORS).unwrap();
     render(&relief.view(&bytes), &lights, &params, Outputs { picture, seen: None, normals: None }).unwrap();
     pixels
@@ -26,10 +27,11 @@ fn picture(relief: &Relief, slants: [f64; 3], noise: f64) -> Vec<u8> {
 const COLORS: [f64; 9] = [90.0, 20.0, 10.0, 25.0, 80.0, 20.0, 10.0, 30.0, 95.0];
 
 fn solved(relief: &Relief, pixels: &[u8], params: Params) -> Solution {
-    let image = Image::interleaved(pixels, SIZE, SIZE, SIZE * 3, Sample::U8, Order::Rgb)
-        .and_then(|image| image.with_mask(&relief.mask, SIZE))
-        .unwrap();
-    let mut workspace = vec![f32::NAN; workspace_len(SIZE * SIZE, params.lmeds.sample_size)];
+    let image =
+        Image::interleaved(pixels, relief.width, relief.height, relief.width * 3, Sample::U8, Order::Rgb)
+            .and_then(|image| image.with_mask(&relief.mask, relief.width))
+            .unwrap();
+    let mut workspace = vec![f32::NAN; workspace_len(relief.mask.len(), params.lmeds.sample_size)];
     let solution = solve(&image, &params, &mut workspace).unwrap();
     assert_eq!(solution.outcome, Outcome::Solved);
     let pixel_counts = &solution.pixel_counts;
@@ -39,7 +41,7 @@ fn solved(relief: &Relief, pixels: &[u8], params: Params) -> Solution {
         + pixel_counts.dark
         + pixel_counts.saturated
         + pixel_counts.shaded;
-    assert_eq!(sum, SIZE * SIZE);
+    assert_eq!(sum, relief.mask.len());
     solution
 }
 
@@ -85,6 +87,23 @@ fn the_faces_are_spanned_by_the_colors_of_two_lights() {
         let asked = Params { shadow_rejection: ShadowRejection::On, ..direct };
         assert_eq!(solved(&relief, &pixels, asked).pixel_counts, solution.pixel_counts);
     }
+}
+
+#[test]
+fn of_a_large_picture_the_rows_of_a_sample_show_them() {
+    // 448 x 448 pixels: every third row is looked at. The shaded share of a ball does not depend on its size.
+    let shares = [SIZE, 448].map(|size| {
+        let relief = sphere(size, size, 0.9, 80.0);
+        let solution = solved(&relief, &picture(&relief, [45.0, 50.0, 55.0], 0.5), Params::default());
+        let (count, worst) = faces(&solution.inliers.usable.shadow_faces);
+        assert!(count == 3 && worst < 0.02, "{size}: {count} faces, off by {worst:.4}");
+        let fit = solution.fit.as_ref().expect("a fit");
+        assert_eq!(fit.usable, solution.pixel_counts.usable, "the last fit is to all pixels");
+        let PixelCounts { shaded, usable, .. } = solution.pixel_counts;
+        shaded as f64 / (shaded + usable) as f64
+    });
+    println!("shaded: {shares:.3?}");
+    assert!((shares[0] - shares[1]).abs() < 0.02);
 }
 
 #[test]

@@ -28,7 +28,7 @@ pub(crate) use search::Sample;
 
 use crate::color::scale::reciprocal_power_of_two;
 use crate::math::rng::Rng;
-use crate::picture::{Image, Usable};
+use crate::picture::{Image, PixelCounts, Usable};
 
 /// How many `f32` [`fit`] needs for a picture of `pixels` pixels.
 #[must_use]
@@ -46,13 +46,23 @@ pub const fn workspace_len(pixels: usize, sample_size: u32) -> usize {
 /// # Scratch
 /// [`workspace_len`] `f32`; what they hold before does not matter.
 pub fn fit(image: &Image, usable: Usable, params: &Params, workspace: &mut [f32]) -> Result<Fit, FitError> {
+    fit_counted(image, usable, &usable.count(image), params, workspace)
+}
+
+/// [`fit`], where the pixels are counted already.
+pub(crate) fn fit_counted(
+    image: &Image,
+    usable: Usable,
+    pixel_counts: &PixelCounts,
+    params: &Params,
+    workspace: &mut [f32],
+) -> Result<Fit, FitError> {
     let subsets = params.subset_count().ok_or(FitError::Params)?;
     let pixels = image.width() * image.height();
     let workspace =
         workspace.get_mut(..workspace_len(pixels, params.sample_size)).ok_or(FitError::WorkspaceTooShort)?;
 
-    let pixel_counts = usable.count(image);
-    enough(&pixel_counts, pixels)?;
+    enough(pixel_counts, pixels)?;
     let scale = reciprocal_power_of_two(pixel_counts.largest);
     let problem = Problem { pixels: image, usable, count: pixel_counts.usable, scale, params };
     let scaled = match params.method {

@@ -118,6 +118,24 @@ impl<'a> Image<'a> {
         Some(Self { channels, height: 1, mask, ..*self })
     }
 
+    /// Every `step`th row, the first one to begin with, with its mask, as a picture.
+    #[must_use]
+    pub fn rows_apart(&self, step: usize) -> Self {
+        let step = step.min(self.height).max(1);
+        let apart = |stride: usize| stride.saturating_mul(step);
+        let mask = self.mask.map(|mask| Mask { row_stride: apart(mask.row_stride), ..mask });
+        let (height, row_stride) = (self.height.div_ceil(step), apart(self.row_stride));
+        Self { row_stride, height, mask, ..*self }
+    }
+
+    /// How far apart the rows of a sample may be: some 65,536 pixels, or 64 rows, say of a larger picture what it is like.
+    #[must_use]
+    pub fn sample_step(&self) -> usize {
+        const ENOUGH_PIXELS: usize = 1 << 16;
+        const ENOUGH_ROWS: usize = 64;
+        (self.width * self.height / ENOUGH_PIXELS).min(self.height / ENOUGH_ROWS).max(1)
+    }
+
     /// The `width` x `height` pixels from column `x` and row `y` on, with their mask, as a picture; `None` where they are none
     /// or not all within this one.
     #[must_use]
@@ -152,17 +170,20 @@ impl<'a> Image<'a> {
             window.masked &= mask.bits(x, y, len);
         }
         let start = y * self.row_stride + x * self.pixel_stride;
-        for (channel, out) in self.channels.iter().zip(&mut window.color) {
-            let bytes = channel.get(start..).unwrap_or_default();
+        let channels = self.channels.map(|channel| channel.get(start..).unwrap_or_default());
+        match (self.sample, self.pixel_stride) {
+            (Sample::U8, 3) => return read_pixels::<3>(channels, len, window),
+            (Sample::U8, 4) => return read_pixels::<4>(channels, len, window),
+            _ => {}
+        }
+        for (bytes, out) in channels.iter().zip(&mut window.color) {
             let out = out.get_mut(..len).unwrap_or_default();
-            match (self.sample, self.pixel_stride) {
-                (Sample::U8, 3) => read_bytes::<3>(bytes, out),
-                (Sample::U8, 4) => read_bytes::<4>(bytes, out),
-                (Sample::U8, _) => read_bytes::<1>(bytes, out),
-                (Sample::U16, _) => {
+            match self.sample {
+                Sample::U8 => read_samples(bytes, 1, out, |[byte]| f32::from(byte)),
+                Sample::U16 => {
                     read_samples(bytes, self.pixel_stride, out, |b| f32::from(u16::from_ne_bytes(b)));
                 }
-                (Sample::F32, _) => read_samples(bytes, self.pixel_stride, out, f32::from_ne_bytes),
+                Sample::F32 => read_samples(bytes, self.pixel_stride, out, f32::from_ne_bytes),
             }
         }
     }
@@ -191,18 +212,39 @@ impl Pixels for Image<'_> {
     fn len(&self) -> usize {
         self.width * self.height
     }
+
+    fn of_part<R>(&self, visit: impl FnOnce(&Self) -> R) -> R {
+        visit(&self.rows_apart(self.sample_step()))
+    }
 }
 
-/// Every `STRIDE`th byte, as many as `out` holds.
-fn read_bytes<const STRIDE: usize>(bytes: &[u8], out: &mut [f32]) {
-    let (pixels, last) = bytes.as_chunks::<STRIDE>();
-    for (pixel, out) in pixels.iter().zip(out.iter_mut()) {
-        if let Some(&sample) = pixel.first() {
-            *out = f32::from(sample);
+/// Pixels of `STRIDE` bytes, three or four, as many as `len`: a word each, which holds its three channels, and from the words
+/// each channel at once.
+fn read_pixels<const STRIDE: usize>(channels: [&[u8]; 3], len: usize, window: &mut Window) {
+    let [red, _, blue] = channels;
+    let (pixels, shifts) = if red.len() >= blue.len() { (red, [0, 8, 16]) } else { (blue, [16, 8, 0]) };
+    let mut words = [0_u32; WINDOW];
+    if len == WINDOW
+        && let Some(pixels) = pixels.get(..STRIDE * WINDOW + 1)
+    {
+        // The compiler knows that all of these words are within.
+        for (i, word) in words.iter_mut().enumerate() {
+            if let Some(bytes) = pixels.get(i * STRIDE..).and_then(<[u8]>::first_chunk) {
+                *word = u32::from_le_bytes(*bytes);
+            }
+        }
+    } else {
+        for (pixel, word) in pixels.as_chunks::<STRIDE>().0.iter().zip(&mut words).take(len) {
+            if let Some(&[a, b, c]) = pixel.first_chunk() {
+                *word = u32::from_le_bytes([a, b, c, 0]);
+            }
         }
     }
-    if let (Some(&sample), Some(out)) = (last.first(), out.get_mut(pixels.len())) {
-        *out = f32::from(sample);
+    for (channel, shift) in window.color.iter_mut().zip(shifts) {
+        for (value, word) in channel.iter_mut().zip(&words) {
+            // A number below 256 is one with a sign, which vector instructions convert.
+            *value = (word >> shift & 255).cast_signed() as f32;
+        }
     }
 }
 
@@ -248,5 +290,27 @@ mod tests {
             assert!(image.crop(corner, size).is_none());
         }
         assert!(image.crop([0, 0], [10, 7]).is_some());
+    }
+
+    #[test]
+    fn rows_apart_are_those_rows() {
+        let bytes: Vec<u8> = (0..7 * 40).collect::<Vec<usize>>().iter().map(|&i| i as u8).collect();
+        let mask: Vec<u8> = (0..70).map(|i| u8::from(i % 3 > 0)).collect();
+        let image = Image::interleaved(&bytes, 10, 7, 40, Sample::U8, Order::Bgra)
+            .and_then(|image| image.with_mask(&mask, 10))
+            .unwrap();
+        let (mut whole, mut own) = (Window::new(), Window::new());
+        for (step, height) in [(0, 7), (1, 7), (2, 4), (3, 3), (6, 2), (7, 1), (usize::MAX, 1)] {
+            let rows = image.rows_apart(step);
+            assert_eq!((rows.width(), rows.height()), (10, height));
+            for row in 0..height {
+                image.read(0, row * step.clamp(1, 7), &mut whole);
+                rows.read(0, row, &mut own);
+                assert_eq!(
+                    (own.masked, own.pixel(3), own.pixel(9)),
+                    (whole.masked, whole.pixel(3), whole.pixel(9))
+                );
+            }
+        }
     }
 }

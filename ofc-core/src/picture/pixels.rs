@@ -18,6 +18,14 @@ pub trait Pixels {
         self.len() == 0
     }
 
+    /// Calls `visit` with a part of the pixels that is large enough to say what they are like as a whole.
+    fn of_part<R>(&self, visit: impl FnOnce(&Self) -> R) -> R
+    where
+        Self: Sized,
+    {
+        visit(self)
+    }
+
     /// Writes `value` of every selected pixel into `out`, in picture order, as far as it holds, and returns what was
     /// written. `selected` gives the bits of a window.
     fn gather<'w>(

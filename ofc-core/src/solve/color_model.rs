@@ -45,7 +45,8 @@ pub(super) fn ranks(
     inliers: &Inliers,
     method: Method,
 ) -> Option<Rank> {
-    rank::rank(pixels, inliers.selector(), fit.map(|fit| (fit.z(), deviation(fit, method))))
+    let form = fit.map(|fit| (fit.z(), deviation(fit, method)));
+    pixels.of_part(|part| rank::rank(part, inliers.selector(), form))
 }
 
 /// The deviation of the residuals. Outliers that least squares keeps are no noise: the robust dispersion leaves them out.

@@ -3,6 +3,7 @@
 //! `find` runs once, at the end of [`solve`](fn@super::solve). An answer that is well determined by most of the pixels costs it a
 //! look at the counts and at a few rows. Otherwise it passes over the picture and tries the causes one by one, those first that
 //! would look like others: an inverted mask leaves something flat, and a picture that is too dark has no third dimension.
+//! Of a large picture it looks at a sample of the rows.
 //! What it compares with is mostly the noise, which it measures from pixel to pixel: the residuals of a fit that failed say
 //! nothing of it.
 //!
@@ -110,7 +111,8 @@ fn without_extremes(image: &Image, saturation: f32, workspace: &mut [f32]) -> Us
     const MANY_TIMES: f32 = 20.0;
     let usable = Usable::below(saturation);
     let brightest = |r: f32, g: f32, b: f32| f64::from(r.max(g).max(b));
-    let values = image.gather(|window| usable.exposed(window), workspace, brightest);
+    let values =
+        image.rows_apart(image.sample_step()).gather(|window| usable.exposed(window), workspace, brightest);
     let median = kth_smallest(values, median_rank(values.len()));
     Usable::below(median.map_or(saturation, |median| saturation.min(MANY_TIMES * median)))
 }

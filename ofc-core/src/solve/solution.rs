@@ -152,7 +152,7 @@ impl Solution {
     #[inline(never)]
     pub(crate) fn reject_lengths(&mut self, pixels: &impl Pixels, rejection: f64, workspace: &mut [f32]) {
         let Some(fit) = &self.fit else { return };
-        self.norm_location = norms::location(pixels, &self.inliers, &fit.z(), workspace);
+        self.norm_location = pixels.of_part(|part| norms::location(part, &self.inliers, &fit.z(), workspace));
         if let Some(lengths) = &self.norm_location {
             self.inliers.norm = Band::norm(fit.z(), lengths, rejection);
             self.inlier_count = self.inliers.count(pixels);

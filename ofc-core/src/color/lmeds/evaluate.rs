@@ -38,9 +38,21 @@ impl<P: Pixels> Problem<'_, P> {
         self.reweighted(&rejection, &inliers, &moments, out).ok_or_else(|| self.rank_deficient())?;
         if let (true, Some(fit)) = (ERRORS, out) {
             fit.covariance = covariance(&moments, self.scale, fit);
-            fit.pixel_noise = fit.pixel_noise.max(noise(self.pixels, &inliers, &fit.z(), workspace));
+            fit.pixel_noise =
+                fit.pixel_noise.max(self.pixels.of_part(|part| noise(part, &inliers, &fit.z(), workspace)));
         }
         Ok(())
+    }
+
+    /// The scaled z of the reweighted fit that follows from the `scaled` z, and nothing else of it; `None` where the pixels that are
+    /// left determine none.
+    ///
+    /// # Scratch
+    /// One `f32` a usable pixel.
+    pub fn reweighted_z(&self, scaled: &Coefficients, workspace: &mut [f32]) -> Option<Coefficients> {
+        let rejection = self.rejection(scaled.map(|c| c * self.scale * self.scale), workspace);
+        let inliers = Inliers { residual: rejection.band, ..Inliers::all(self.usable) };
+        self.moments(&inliers).solve().map(|fit| fit.coefficients)
     }
 
     /// What follows from the robust z alone.

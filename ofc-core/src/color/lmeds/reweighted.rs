@@ -39,20 +39,25 @@ impl<P: Pixels> Problem<'_, P> {
         let fit = moments.solve();
         let fit = fit.as_ref()?;
         let scale = self.scale;
-        let residual_sum = self.residual_sum(inliers, &fit.coefficients.map(|c| c * (scale * scale)));
-        let rounding = self.smallest_step(inliers) * rounding::DEVIATION;
+        let (residual_sum, smallest_step) =
+            self.residuals_and_steps(inliers, &fit.coefficients.map(|c| c * (scale * scale)));
+        let rounding = smallest_step * rounding::DEVIATION;
         Refit::new(moments, fit, scale, self.params.limits_confidence, residual_sum, rounding)
     }
 
-    /// The smallest difference in a channel between an inlier and the one before it, other than none: how finely the
-    /// picture is quantized, whatever the type of its pixels. Zero when there are no differences.
+    /// The sum of the squared residuals of the inliers; and the smallest difference in a channel between an inlier and the one
+    /// before it, other than none: how finely the picture is quantized, whatever the type of its pixels. Zero when there are no
+    /// differences.
     #[inline(never)]
-    fn smallest_step(&self, inliers: &Inliers) -> f64 {
-        let mut smallest = f32::INFINITY;
-        let mut previous = None;
+    fn residuals_and_steps(&self, inliers: &Inliers, z: &Coefficients) -> (f64, f64) {
+        let (mut residual_sum, mut smallest, mut previous) = (0.0, f32::INFINITY, None);
         self.pixels.for_each_window(|window| {
+            let mut sum = 0.0;
             for_each_bit(inliers.bits(window), |i| {
                 let pixel = window.pixel(i);
+                let [r, g, b] = pixel;
+                let residual = quadratic_form(z, r, g, b) - 1.0;
+                sum += residual * residual;
                 for (now, before) in pixel.into_iter().zip(previous.unwrap_or(pixel)) {
                     let step = fabsf(now - before);
                     if step > 0.0 && step < smallest {
@@ -61,24 +66,9 @@ impl<P: Pixels> Problem<'_, P> {
                 }
                 previous = Some(pixel);
             });
-        });
-        if smallest.is_finite() { f64::from(smallest) } else { 0.0 }
-    }
-
-    /// The sum of the squared residuals of the inliers.
-    #[inline(never)]
-    fn residual_sum(&self, inliers: &Inliers, z: &Coefficients) -> f64 {
-        let mut residual_sum = 0.0;
-        self.pixels.for_each_window(|window| {
-            let mut sum = 0.0;
-            for_each_bit(inliers.bits(window), |i| {
-                let [r, g, b] = window.pixel(i);
-                let residual = quadratic_form(z, r, g, b) - 1.0;
-                sum += residual * residual;
-            });
             residual_sum += sum;
         });
-        residual_sum
+        (residual_sum, if smallest.is_finite() { f64::from(smallest) } else { 0.0 })
     }
 }
 

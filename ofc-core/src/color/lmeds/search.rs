@@ -6,6 +6,7 @@ use crate::color::regression::{self, Moments, TERMS};
 use crate::math::rng::Rng;
 use crate::math::select::{kth_smallest, median_rank};
 use crate::picture::{Image, for_each_bit};
+use libm::sqrt;
 
 /// Times that the better half is fitted again, at most: measured, ten reach the smallest objective that thousands of restarts
 /// find.
@@ -88,8 +89,10 @@ impl<'w> Sample<'w> {
             let subset = rng.distinct::<TERMS>(self.len() as u32)?;
             let Some(z) = regression::through(&subset.map(|i| self.color(i))) else { continue };
             // The median can only be smaller if more than half of the residuals are: counting is cheaper.
-            if best.as_ref().is_none_or(|best| self.count_below(&z, best.objective) > median_rank(self.len()))
-            {
+            if best.as_ref().is_none_or(|best| {
+                self.may_be_better(&z, best.objective)
+                    && self.count_below(&z, best.objective) > median_rank(self.len())
+            }) {
                 best = Some(Proposal { objective: self.objective(&z), z });
             }
         }
@@ -114,6 +117,22 @@ impl<'w> Sample<'w> {
             best = Proposal { objective, z: fit.coefficients };
         }
         best.z
+    }
+
+    /// Whether about half of every tenth color's residuals are below `limit`: fewer by two deviations of such a count, and one in
+    /// fifty proposals that are hardly better is lost.
+    fn may_be_better(&self, z: &Coefficients, limit: f32) -> bool {
+        const STEP: usize = 10;
+        let z = z.map(|c| c as f32);
+        let [red, green, blue] =
+            [self.red, self.green, self.blue].map(|channel| channel.as_chunks::<STEP>().0);
+        let (mut count, mut below) = (0_u32, 0_u32);
+        for (([r, ..], [g, ..]), [b, ..]) in red.iter().zip(green).zip(blue) {
+            count += 1;
+            below += u32::from(absolute_residual(&z, *r, *g, *b) < limit);
+        }
+        let (half, deviation) = (0.5 * f64::from(count), 0.5 * sqrt(f64::from(count)));
+        f64::from(below) >= half - 2.0 * deviation
     }
 
     fn count_below(&self, z: &Coefficients, limit: f32) -> usize {

@@ -47,7 +47,7 @@ struct Background {
 }
 
 impl Background {
-    /// Of the first and the last selected pixel of each row; `None` without any.
+    /// Of the first and the last selected pixel of each row of a sample of them; `None` without any.
     ///
     /// # Scratch
     /// As many `f32` as there are rows, twice.
@@ -58,6 +58,7 @@ impl Background {
         noise: f64,
         workspace: &mut [f32],
     ) -> Option<Self> {
+        let image = &image.rows_apart(image.sample_step());
         let mut color = [0.0; 3];
         for (channel, slot) in color.iter_mut().enumerate() {
             let mut count = 0;

@@ -32,12 +32,14 @@ pub(super) struct Steps {
 }
 
 impl Steps {
-    /// Of the pixels that `selected` gives the bits of, along rows.
+    /// Of the pixels that `selected` gives the bits of, along a sample of the rows; the number is made up to that of all rows.
     ///
     /// # Scratch
     /// One `f32` a pixel.
     #[inline(never)]
     pub fn of(image: &Image, selected: impl Fn(&Window) -> u64, noise: f64, workspace: &mut [f32]) -> Self {
+        let step = image.sample_step();
+        let image = &image.rows_apart(step);
         let mut tensor: Mat3 = [[0.0; 3]; 3];
         let mut count = 0_usize;
         for_each_step(image, &selected, noise, |step| {
@@ -69,7 +71,7 @@ impl Steps {
             let off = (fabs(along) - median) / median;
             same += usize::from(off * off + across / (median * median) < SAME * SAME);
         });
-        Self { count, same: share(same, count) }
+        Self { count: count * step, same: share(same, count) }
     }
 
     /// That there are two paints: steps along a border that is as long as to cross the surface, of which this share is the same.

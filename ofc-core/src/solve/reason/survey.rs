@@ -16,7 +16,7 @@ const STEP: usize = 2;
 /// What the colors of a set of pixels are.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Survey {
-    /// How many pixels there are.
+    /// How many pixels there are, made up from the rows that were looked at.
     pub count: usize,
     /// The root mean squares of the colors along their principal axes, descending.
     pub deviations: [f64; 3],
@@ -30,14 +30,16 @@ pub(super) struct Survey {
 }
 
 impl Survey {
-    /// Of the pixels that `selected` gives the bits of; `None` without any.
+    /// Of the pixels that `selected` gives the bits of, in a sample of the rows; `None` without any.
     ///
     /// # Scratch
     /// One `f32` a pixel.
     #[inline(never)]
     pub fn of(image: &Image, selected: impl Fn(&Window) -> u64, workspace: &mut [f32]) -> Option<Self> {
+        let step = image.sample_step();
+        let rows = &image.rows_apart(step);
         let (mut sum, mut moments, mut count) = ([0.0; 3], SecondMoments::default(), 0_usize);
-        image.for_each_window(|window| {
+        rows.for_each_window(|window| {
             let bits = selected(window);
             for_each_bit(bits, |i| {
                 let color = window.pixel(i).map(f64::from);
@@ -54,9 +56,9 @@ impl Survey {
         let moments = moments.mean(count as f64);
         let mean = sum.map(|sum| sum / count as f64);
         let deviations = mat3::symmetric_eigen(&moments).values.map(|square| sqrt(square.max(0.0)));
-        let noise = noise(image, &selected, deviations, workspace);
-        let change = change(image, &selected, noise);
-        Some(Self { count, deviations, spread: spread(&moments, mean), noise, change })
+        let noise = noise(rows, &selected, deviations, workspace);
+        let change = change(image, step, &selected, noise);
+        Some(Self { count: count * step, deviations, spread: spread(&moments, mean), noise, change })
     }
 
     /// Whether the colors span space: all their deviations are above so many times the noise.
@@ -115,12 +117,12 @@ fn noise(
     sqrt(median / MEDIAN).max(floor)
 }
 
-/// The eigenvalues of the mean structure tensor, noise taken off.
+/// The eigenvalues of the mean structure tensor at every `step`th row, noise taken off.
 #[inline(never)]
-fn change(image: &Image, selected: &impl Fn(&Window) -> u64, noise: f64) -> [f64; 2] {
+fn change(image: &Image, step: usize, selected: &impl Fn(&Window) -> u64, noise: f64) -> [f64; 2] {
     let mut rows = [const { Window::new() }; 3];
     let (mut tensor, mut count) = ([0.0; 3], 0_u64);
-    for y in STEP..image.height().saturating_sub(STEP) {
+    for y in (STEP..image.height().saturating_sub(STEP)).step_by(step.max(1)) {
         for x in (0..image.width()).step_by(WINDOW - 2 * STEP) {
             for (row, y) in rows.iter_mut().zip([y - STEP, y, y + STEP]) {
                 image.read(x, y, row);
