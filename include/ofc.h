@@ -217,6 +217,82 @@ ofc_status ofc_depth_integrate(const ofc_depth_input *input, const ofc_depth_par
                                size_t workspace_bytes, float *depth, size_t depth_stride_bytes,
                                ofc_depth_result *result);
 
+/* ---- The whole surface: part 2 has the parameters and the result ------------------------------------------------ */
+
+/// How ofc_surface_complete() works. Set by ofc_surface_params_default().
+typedef struct ofc_surface_params ofc_surface_params;
+/// What ofc_surface_complete() found beside the pictures.
+typedef struct ofc_surface_result ofc_surface_result;
+
+/// What is known of a pixel: the lowest three bits of its byte, one of OFC_SURFACE_* after `byte & OFC_SURFACE_CLASS`.
+typedef uint8_t ofc_surface_class;
+
+#define OFC_SURFACE_OUTSIDE 0      ///< The pixel is not in the mask.
+#define OFC_SURFACE_THREE_LIGHTS 1 ///< The pixel sees all three lights, and its color determines the normal.
+/// The pixel sees two lights: its color determines the normal and the normal's mirror image at the plane of both lights, of which
+/// integrability chooses one.
+#define OFC_SURFACE_TWO_LIGHTS 2
+/// The pixel sees one light: its color determines the angle to it, and the surface around the rest.
+#define OFC_SURFACE_ONE_LIGHT 3
+/// Of the color nothing is known, as of black and saturated pixels; the surface is interpolated.
+#define OFC_SURFACE_INTERPOLATED 4
+/// The pixel sees all three lights but does not obey the model, for its noise, an interreflection, a soft shadow or a highlight: the
+/// normal is that of its color, and the uncertainty holds the misfit.
+#define OFC_SURFACE_REJECTED 5
+#define OFC_SURFACE_CLASS 7 ///< The bits of the class.
+/// The bit of a pixel that sees light 0 of ofc_surface_result; twice and four times that for lights 1 and 2. A light whose shadow was
+/// not found is taken to be seen.
+#define OFC_SURFACE_FIRST_LIGHT 16
+/// The bit of a pixel of two lights whose mirror image is the right one with a probability above 0.1.
+#define OFC_SURFACE_DOUBTFUL 128
+
+/// Sets every field to its default.
+/// @param params  Output: the parameters.
+/// @return OFC_STATUS_OK; an argument status.
+ofc_status ofc_surface_params_default(ofc_surface_params *params);
+
+/// Says how many bytes of workspace ofc_surface_complete() needs: about 27 for each pixel. OFC_SURFACE_WORKSPACE_SIZE() is the same
+/// number for static buffers.
+/// @param width,height  Size of the picture.
+/// @return The size; 0 when an argument is invalid or there are more than 2^29 - 1 pixels.
+size_t ofc_surface_workspace_size(int32_t width, int32_t height);
+
+/// Makes the whole surface of a picture: a normal, its uncertainty, a depth and a class for every pixel of the mask.
+///
+/// ofc_normals_compute() has normals of inliers, which see all three lights. Here shadows are used instead: the colors in the shadow
+/// of a light lie in a plane, whose normal is the direction of that light. A pixel that sees two lights has one of two normals then,
+/// one that sees a single light a cone of them, and what colors leave open is chosen so that all normals are those of one surface,
+/// which bridges pixels without evidence. Lights whose shadows are in no picture cannot be found, and what lies in their shadow is
+/// interpolated, as it is under more than three lights: classes say so.
+///
+/// What was said of the solution's reliability holds here, too. Errors of the orientation that all pixels share are in the
+/// uncertainty; a wrong choice of a mirror image is not, but a bit says where it may be.
+/// @param image  The picture that was solved, with its mask.
+/// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
+/// @param params  The parameters.
+/// @param workspace  ofc_surface_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param normals  Output: height rows of width (x, y, z) floats, unit normals; zero outside of the mask.
+/// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @param angle_rad  Output: height rows of width floats, the angle in radians below which 68.3 % of the errors of such a normal
+///     are expected to lie; pi outside of the mask.
+/// @param angle_stride_bytes  The same for this output.
+/// @param depth  Output: height rows of width floats, growing toward the camera, in the unit of the pixel pitch; NaN outside of
+///     the mask.
+/// @param depth_stride_bytes  The same for this output.
+/// @param classes  Output: height rows of width bytes, OFC_SURFACE_*.
+/// @param classes_stride_bytes  Bytes from one row to the next.
+/// @param result  Output: the lights, and how it went.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_CONVERGED, outputs written, when the depth did not reach its tolerance;
+///     OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by the direct method; OFC_STATUS_TOO_FEW_PIXELS when no pixel
+///     of the mask is usable; an argument status.
+///
+/// Stack: below 24 KiB. Reference: section 6, which leaves this open; docs/whole-surface.md.
+ofc_status ofc_surface_complete(const ofc_image *image, const ofc_solution *solution, const ofc_surface_params *params,
+                                void *workspace, size_t workspace_bytes, float *normals, size_t normals_stride_bytes,
+                                float *angle_rad, size_t angle_stride_bytes, float *depth, size_t depth_stride_bytes,
+                                ofc_surface_class *classes, size_t classes_stride_bytes, ofc_surface_result *result);
+
 /* ---- What a status says ----------------------------------------------------------------------------------------- */
 
 /// Says what a status means.
@@ -726,6 +802,52 @@ struct ofc_depth_result {
     /// would not show them.
     int32_t converged;
     uint32_t reserved; ///< Zero.
+};
+
+/* ---- The whole surface ------------------------------------------------------------------------------------------ */
+
+/// How ofc_surface_complete() knows what a light's shadow leaves of a color: one of OFC_DUAL_*.
+typedef int32_t ofc_dual_source;
+
+#define OFC_DUAL_NONE 0       ///< It does not: pixels in the shadow of this light are interpolated.
+#define OFC_DUAL_DIRECTIONS 1 ///< From the directions of all three lights.
+/// By a search, from what the shadows of one or two lights show: integrable normals that go on across the edges of cast shadows.
+#define OFC_DUAL_SEARCH 2
+/// A search found none that the normals in the shadow agree with: pixels in the shadow of this light are interpolated.
+#define OFC_DUAL_REJECTED 3
+
+/// One of the real lights, of which each channel mixes all.
+typedef struct ofc_surface_light {
+    /// The unit vector toward the light, x right, y up, z toward the camera; zero where there is no such light.
+    double direction[3];
+    /// The color r, g, b of a surface that faces the light, in pixel values; zero where it is not known.
+    double color[3];
+    ofc_dual_source dual_source; ///< How the color and what its shadow leaves are known, one of OFC_DUAL_*.
+    uint32_t reserved;           ///< Zero.
+} ofc_surface_light;
+
+/// How ofc_surface_complete() works. Set by ofc_surface_params_default().
+struct ofc_surface_params {
+    /// Width and height of a pixel on the surface, in the unit of the depth: in [1e-30, 1e30]. Default 1.
+    double pixel_pitch;
+    uint64_t seed; ///< Determines every random choice. Default 0.
+    /// 1 where each channel is a photograph of its own under one light: the rows of F are these lights then, and none is searched
+    /// for. 0 else. Default 0.
+    int32_t channels_are_lights;
+    uint32_t reserved[5]; ///< Must be zero.
+};
+
+/// What ofc_surface_complete() found beside the pictures.
+struct ofc_surface_result {
+    ofc_surface_light lights[3]; ///< The lights whose shadows were found.
+    /// By how much normals differ across the borders of shadows in the median, beyond what they do among lit pixels, in radians: 0
+    /// where the model holds; 0, too, where hardly any pixel sees two lights.
+    double border_gap_rad;
+    int32_t class_counts[8]; ///< How many pixels are of each class, with OFC_SURFACE_* as the index.
+    int32_t light_count;     ///< How many lights were found, 0 to 3.
+    int32_t regions;         ///< How many connected regions the mask has. Each has zero mean depth.
+    int32_t converged;       ///< 1 when the depth reached its tolerance, 0 otherwise.
+    uint32_t reserved;       ///< Zero.
 };
 
 /* =====================================================================================================================
@@ -2165,6 +2287,9 @@ const char *ofc_version_string(void);
     ((3 * ((OFC_SIZE(height) + 2) * (OFC_SIZE(width) + 1) + 1) +                                                       \
       8 * (OFC_PIXELS(width, height) / 3 + 3 * OFC_SIZE(width) + 2 * OFC_SIZE(height) + 180) +                         \
       4 * (2 * OFC_SIZE(height) + 30) + 7 * (OFC_SIZE(width) + 2)) * 4)
+/// What ofc_surface_workspace_size() returns.
+#define OFC_SURFACE_WORKSPACE_SIZE(width, height)                                                                      \
+    (OFC_DEPTH_WORKSPACE_SIZE(width, height) + OFC_PIXELS(width, height) * 4)
 /// What ofc_lmeds_workspace_size() returns for the default sample_size.
 #define OFC_LMEDS_WORKSPACE_SIZE(width, height) OFC_LMEDS_WORKSPACE_SIZE_FOR(width, height, 10000)
 /// What ofc_lmeds_workspace_size() returns for this sample_size.

@@ -1,6 +1,7 @@
 //! The surface: [`normals`] by eq. 8, the [`uncertainty`] of each, how far its pixel departs from the matte model ([`wolff`]), and
 //! [`depth`] by integration.
 
+pub mod completion;
 pub mod depth;
 pub mod normals;
 mod rows;

@@ -94,8 +94,8 @@ impl Extent {
     }
 }
 
-/// No call uses more buffers: ofc_flat_field() with masks and planes.
-const MOST_BUFFERS: usize = 12;
+/// No call uses more buffers: ofc_surface_complete() with a mask and planes.
+const MOST_BUFFERS: usize = 13;
 
 /// A call under way: it turns the caller's pointers into what they point to.
 pub struct Call<'a> {

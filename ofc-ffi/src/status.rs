@@ -14,6 +14,7 @@ use ofc_core::picture::flat_field::FlatFieldError;
 use ofc_core::render::{DepthMapError, RenderError};
 use ofc_core::solve::Outcome;
 use ofc_core::stream::StreamError;
+use ofc_core::surface::completion::CompletionError;
 use ofc_core::surface::depth::DepthError;
 use ofc_core::surface::normals;
 
@@ -201,6 +202,13 @@ refusals! {
         DepthError::Workspace(_) => OFC_STATUS_WORKSPACE_TOO_SMALL,
         DepthError::Output => OFC_STATUS_STRIDE_TOO_SMALL,
         DepthError::Empty => OFC_STATUS_TOO_FEW_PIXELS,
+    }
+    CompletionError {
+        CompletionError::Size => OFC_STATUS_TOO_LARGE,
+        CompletionError::Parameter => OFC_STATUS_INVALID_PARAMETER,
+        CompletionError::Workspace(_) => OFC_STATUS_WORKSPACE_TOO_SMALL,
+        CompletionError::Output => OFC_STATUS_STRIDE_TOO_SMALL,
+        CompletionError::Empty => OFC_STATUS_TOO_FEW_PIXELS,
     }
     CheckError {
         CheckError::Orientation => OFC_STATUS_NOT_SOLVED,

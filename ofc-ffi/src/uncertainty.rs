@@ -26,7 +26,7 @@ pub struct ofc_covariance {
 plain!(ofc_covariance);
 
 /// What the uncertainty of a solution comes from, if it is there and finite.
-fn sources(solution: &ofc_solution) -> Result<Sources, Refusal> {
+pub(crate) fn sources(solution: &ofc_solution) -> Result<Sources, Refusal> {
     let orientation = solved(solution)?;
     ensure(solution.confidence.evidence != OFC_EVIDENCE_TILTS_ALONE, OFC_STATUS_NO_COVARIANCE)?;
     let (c, noise) = (solution.fit.covariance, solution.fit.pixel_noise);

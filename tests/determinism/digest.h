@@ -45,6 +45,7 @@ void mix_annealing_params(const ofc_annealing_params *params);
 void mix_segment_params(const ofc_segment_params *params);
 void mix_depth_params(const ofc_depth_params *params);
 void mix_depth_result(const ofc_depth_result *result);
+void mix_surface_result(const ofc_surface_result *result);
 void mix_drift(const ofc_stream_drift *drift);
 
 #endif

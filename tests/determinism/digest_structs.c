@@ -351,3 +351,20 @@ void mix_drift(const ofc_stream_drift *drift)
     INTEGER(drift->refined);
     INTEGER(drift->reserved);
 }
+
+void mix_surface_result(const ofc_surface_result *result)
+{
+    for (int i = 0; i < 3; i++) {
+        const ofc_surface_light *light = &result->lights[i];
+        ARRAY(light->direction);
+        ARRAY(light->color);
+        INTEGER(light->dual_source);
+        INTEGER(light->reserved);
+    }
+    NUMBER(result->border_gap_rad);
+    INTEGERS(result->class_counts);
+    INTEGER(result->light_count);
+    INTEGER(result->regions);
+    INTEGER(result->converged);
+    INTEGER(result->reserved);
+}

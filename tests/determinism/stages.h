@@ -25,6 +25,8 @@ void mix_methods(const ofc_image *image, const struct fitted *fitted);
 void mix_solve(const ofc_image *image, int variant);
 /* Of the normals; the surface that it returns lasts until the next call. */
 ofc_depth_map mix_depth(const ofc_image *image);
+/* The surface of a picture that is solved once more. */
+void mix_surface(const ofc_image *image);
 void mix_stream(const ofc_image *image);
 void mix_flat_field(const ofc_image *image);
 void mix_paint(const ofc_image *image);

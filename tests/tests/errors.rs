@@ -12,6 +12,7 @@ use ofc_core::picture::ImageError;
 use ofc_core::picture::flat_field::FlatFieldError;
 use ofc_core::render::{DepthMapError, LightsError, RenderError};
 use ofc_core::stream::StreamError;
+use ofc_core::surface::completion::CompletionError;
 use ofc_core::surface::depth::DepthError;
 use ofc_core::surface::normals::TooShort;
 use std::error::Error;
@@ -20,7 +21,7 @@ use std::path::Path;
 #[test]
 fn every_error_says_what_is_wrong() {
     let color_deviations = [0.0; 3];
-    let errors: [Box<dyn Error>; 63] = [
+    let errors: [Box<dyn Error>; 68] = [
         Box::new(CheckError::Orientation),
         Box::new(CheckError::WorkspaceTooShort),
         Box::new(CheckError::NoInliers),
@@ -82,6 +83,11 @@ fn every_error_says_what_is_wrong() {
         Box::new(DepthError::Workspace(Need::of_singles(7))),
         Box::new(DepthError::Output),
         Box::new(DepthError::Empty),
+        Box::new(CompletionError::Size),
+        Box::new(CompletionError::Parameter),
+        Box::new(CompletionError::Workspace(Need::of_singles(7))),
+        Box::new(CompletionError::Output),
+        Box::new(CompletionError::Empty),
         Box::new(TooShort),
         Box::new(StreamError::Fit(FitError::RankDeficient { color_deviations })),
     ];

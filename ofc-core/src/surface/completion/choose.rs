@@ -1,0 +1,208 @@
+//! Choosing the normals that colors leave open, and integrating, in turn.
+//!
+//! Every pixel's normal becomes the one nearest to the surface so far that its color allows, and the surface the one that has these
+//! normals: images of two lights by what integrability says and by the surface around, normals of one light on their cones.
+
+use super::attached::hidden;
+use super::boxes;
+use super::class::{INTERPOLATED, NOTE, ONE_LIGHT, TWO_LIGHTS, class, single_light};
+use super::rim::outward;
+use super::slopes;
+use super::state::{Known, State};
+use super::two;
+use super::vector::{Vector, ZERO, add, distance_squared, scale, unit};
+use crate::surface::depth::{DepthError, DepthResult, Method};
+use libm::sqrtf;
+
+/// Times that normals are chosen.
+const ROUNDS: u32 = 6;
+/// The surface says its part of the choice half as loud in so many rounds.
+const CAREFUL_ROUNDS: u32 = 2;
+/// What the surface so far may be off by, as a chord.
+const SURFACE_NOISE: f32 = 0.25;
+/// No pixel of the surface says more than this.
+const MOST: f32 = 10.0;
+/// An image that faces away is that much less likely.
+const LEAST_N3: f32 = 0.03;
+const FACING_AWAY: f32 = 2.0;
+/// The surface's part is the mean over `2 RADIUS + 1` pixels a side.
+const RADIUS: usize = 3;
+/// An image this many times as likely as the other, as a logarithm, has its whole weight.
+const CERTAIN: f32 = 4.0;
+/// The part of its weight that any has.
+const LEAST_PART: f32 = 0.05;
+/// The smoothing of the surface, as a radius in pixels.
+const SMOOTHING: usize = 2;
+/// How much turning to hidden lights costs, at first and later.
+const STRICT: f32 = 4.0;
+const LENIENT: f32 = 1.0;
+
+/// Weights of what the color says little or nothing of.
+const WEIGHT_OF_ONE_LIGHT: f32 = 0.05;
+const WEIGHT_OF_NOTHING: f32 = 0.01;
+/// The weight of a silhouette's outward normals, in the first surface.
+const WEIGHT_OF_RIM: f32 = 0.05;
+/// Slopes with this angle of uncertainty, in radians, have the weight 1.
+const ONE_DEGREE: f32 = 0.017_453_3;
+
+/// How exactly surfaces on the way are integrated.
+const TOLERANCE: f64 = 1e-3;
+/// And the last one.
+const FINAL_TOLERANCE: f64 = 1e-4;
+
+/// The weight of a normal with this uncertainty in radians.
+pub(super) fn weight(angle: f32, [.., n3]: Vector) -> f32 {
+    let sure = (ONE_DEGREE / angle.max(0.25 * ONE_DEGREE)).min(4.0);
+    let facing = (n3 / 0.3).clamp(0.05, 1.0);
+    (sure * sure * facing * facing).clamp(1e-3, 16.0)
+}
+
+/// Leaves the chosen normals in the state, the surface that they make, and in its ratios how clear each choice between images was.
+pub(super) fn choose(state: &mut State, known: &Known, rim: Option<f32>) -> Result<DepthResult, DepthError> {
+    begin(state, known, rim);
+    let mut result = state.integrate(Method::Coupled, TOLERANCE)?;
+    for round in 0..ROUNDS {
+        let loudness = if round < CAREFUL_ROUNDS { 0.5 } else { 1.0 };
+        let is_last = round + 1 == ROUNDS;
+        let [p, q, votes, between] = State::planes(state.singles, state.size);
+        slopes::of(&state.depth, &state.classes, SMOOTHING, [&mut *p, &mut *q, &mut *votes, &mut *between]);
+        // What pixels say themselves, and what those around them say, go through the weights.
+        for light in 0..3 {
+            let Some(Some(fold)) = known.folds.get(light) else { continue };
+            let ours = |byte: u8| class(byte) == TWO_LIGHTS && single_light(byte) == light;
+            let width = state.size[0].max(1);
+            for (y, row) in votes.chunks_exact_mut(width).enumerate() {
+                let pixels = state.classes.row(y).iter().zip(state.normals.row(y));
+                for (x, (vote, (&byte, &n))) in row.iter_mut().zip(pixels).enumerate() {
+                    *vote = 0.0;
+                    if ours(byte) {
+                        let guess = normal_at(p, q, width, [x, y]);
+                        let [plus, minus] = fold.both(n).map(|image| cost(image, guess));
+                        let noise = 2.0 * SURFACE_NOISE * SURFACE_NOISE;
+                        *vote = ((minus - plus) / noise).clamp(-MOST, MOST);
+                    }
+                }
+            }
+            boxes::sums(votes, between, width, RADIUS);
+            let area = (2 * RADIUS + 1) * (2 * RADIUS + 1);
+            for (y, row) in votes.chunks_exact(width).enumerate() {
+                let ratios = state.ratios.get_mut(y * width..(y + 1) * width).unwrap_or_default();
+                let pixels = state.classes.row(y).iter().zip(state.normals.row_mut(y));
+                let outputs = state.weights.row_mut(y).iter_mut().zip(ratios);
+                for (((&byte, n), (weight, ratio)), &votes) in pixels.zip(outputs).zip(row) {
+                    if !ours(byte) {
+                        continue;
+                    }
+                    let said = *ratio + loudness * votes / area as f32;
+                    let [plus, minus] = fold.both(*n);
+                    *n = two::facing(said, plus, minus);
+                    let angle = sqrtf(fold.variance(*n));
+                    let part = (said.abs() / CERTAIN).clamp(LEAST_PART, 1.0);
+                    *weight = self::weight(angle, *n).clamp(0.01, 1.0) * part;
+                    if is_last {
+                        *ratio = said;
+                    }
+                }
+            }
+        }
+        let strictness = if 2 * round < ROUNDS { STRICT } else { LENIENT };
+        guess_others(state, known, strictness);
+        let tolerance = if is_last { FINAL_TOLERANCE } else { TOLERANCE };
+        result = state.integrate(Method::Poisson, tolerance)?;
+    }
+    Ok(result)
+}
+
+/// How badly an image agrees with the surface so far.
+fn cost(image: Vector, guess: Vector) -> f32 {
+    let [.., n3] = image;
+    distance_squared(image, guess) + FACING_AWAY * sqrtf((LEAST_N3 - n3).clamp(0.0, 1.0))
+}
+
+fn normal_at(p: &[f32], q: &[f32], width: usize, [x, y]: [usize; 2]) -> Vector {
+    let i = y * width + x;
+    match (p.get(i), q.get(i)) {
+        (Some(&p), Some(&q)) => slopes::normal(p, q),
+        _ => ZERO,
+    }
+}
+
+/// Weights and normals of the first surface: of what is known, and of a silhouette.
+fn begin(state: &mut State, known: &Known, rim: Option<f32>) {
+    let [width, height] = state.size;
+    for y in 0..height {
+        for x in 0..width {
+            let byte = state.classes.at(x, y);
+            let ratio = state.ratios.get(y * width + x).copied().unwrap_or(0.0);
+            match class(byte) {
+                TWO_LIGHTS => {
+                    let Some(Some(fold)) = known.folds.get(single_light(byte)) else { continue };
+                    let Some(n) = state.normals.row_mut(y).get_mut(x) else { continue };
+                    let [plus, minus] = fold.both(*n);
+                    *n = two::facing(ratio, plus, minus);
+                    let angle = sqrtf(fold.variance(*n));
+                    let is_clear = ratio.abs() > CERTAIN;
+                    let weight = if is_clear { weight(angle, *n).clamp(0.01, 1.0) } else { 0.0 };
+                    state.weights.set(x, y, weight);
+                }
+                ONE_LIGHT => state.weights.set(x, y, 0.0),
+                INTERPOLATED => {
+                    state.weights.set(x, y, 0.0);
+                    if let Some(cosine) = rim.filter(|_| byte & NOTE != 0) {
+                        let n = rim_normal(cosine, outward(&state.classes, [x, y]));
+                        state.weights.set(x, y, WEIGHT_OF_RIM);
+                        if let Some(slot) = state.normals.row_mut(y).get_mut(x) {
+                            *slot = n;
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+fn rim_normal(cosine: f32, outward: Vector) -> Vector {
+    add(scale(outward, cosine), sqrtf(1.0 - cosine * cosine), [0.0, 0.0, 1.0])
+}
+
+/// Normals of one light, on their cones, and of none, from the surface so far.
+fn guess_others(state: &mut State, known: &Known, strictness: f32) {
+    let [p, q, ..] = State::planes(state.singles, state.size);
+    let [width, height] = state.size;
+    for y in 0..height {
+        for x in 0..width {
+            let byte = state.classes.at(x, y);
+            if !matches!(class(byte), ONE_LIGHT | INTERPOLATED) {
+                continue;
+            }
+            let guess = normal_at(p, q, width, [x, y]);
+            let Some(n) = state.normals.row_mut(y).get_mut(x) else { continue };
+            if class(byte) == ONE_LIGHT {
+                *n = on_cone(known, byte, *n, guess, strictness);
+                state.weights.set(x, y, WEIGHT_OF_ONE_LIGHT);
+            } else {
+                *n = guess;
+                if byte & NOTE != 0 {
+                    *n = unit(add(guess, 1.0, rim_normal(0.8, outward(&state.classes, [x, y]))));
+                }
+                state.weights.set(x, y, WEIGHT_OF_NOTHING);
+            }
+        }
+    }
+}
+
+/// The normal of a pixel of one light that is nearest to a guess.
+pub(super) fn on_cone(known: &Known, byte: u8, n: Vector, guess: Vector, strictness: f32) -> Vector {
+    let light = single_light(byte);
+    match (known.directions.get(light), known.cones.get(light)) {
+        (Some(Some(direction)), Some(Some(cone))) => {
+            let cosine = super::vector::dot(*direction, n);
+            cone.nearest(cosine, guess, &hidden(byte, &known.directions), strictness).unwrap_or(n)
+        }
+        _ => guess,
+    }
+}
+
+/// How much turning to hidden lights costs in the end.
+pub(super) const IN_THE_END: f32 = LENIENT;
