@@ -65,10 +65,16 @@ fn mistakes(text: &str, folder: &Path) -> Vec<String> {
 #[test]
 fn documents_agree_with_the_code() {
     let root = root();
-    let mut documents: Vec<_> =
-        ["README.md", "CONTRIBUTING.md", "SECURITY.md", "bindings/python/README.md", "c_examples/README.md"]
-            .map(|file| root.join(file))
-            .into();
+    let mut documents: Vec<_> = [
+        "README.md",
+        "CONTRIBUTING.md",
+        "SECURITY.md",
+        "bindings/python/README.md",
+        "bindings/web/README.md",
+        "c_examples/README.md",
+    ]
+    .map(|file| root.join(file))
+    .into();
     for folder in ["docs", "docs/guide", "docs/reference"] {
         let pages = std::fs::read_dir(root.join(folder)).expect("docs");
         documents.extend(

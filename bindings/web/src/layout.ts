@@ -1,0 +1,31 @@
+/** Where the fields of ofc.h's structs lie on wasm32; test.sh has a compiler check each number against the header. */
+export const layout = {
+  ofc_image: {
+    size: 40,
+    pixels: 0,
+    width: 4,
+    height: 8,
+    row_stride_bytes: 12,
+    format: 16,
+    mask: 32,
+    mask_stride_bytes: 36,
+  },
+  ofc_solve_params: { size: 144, "lmeds.saturation": 32, "lmeds.seed": 40, convexity: 132 },
+  ofc_solution: {
+    size: 2008,
+    inlier_count: 16,
+    reason: 24,
+    reason_channel: 28,
+    reason_value: 32,
+    reason_limit: 40,
+    "pixel_counts.masked_out": 52,
+    "confidence.error_rad": 1416,
+    "confidence.convexity": 1424,
+    "confidence.log_likelihood_margin": 1432,
+    "orientation.f": 1832,
+  },
+  ofc_pixel_counts: { size: 32, masked_out: 4 },
+  ofc_depth_input: { size: 56, normals: 0, normals_stride_bytes: 4, mask: 24, mask_stride_bytes: 28, width: 48, height: 52 },
+  ofc_depth_params: { size: 64, pixel_pitch: 0 },
+  ofc_depth_result: { size: 32, regions: 12 },
+} as const;
