@@ -50,7 +50,7 @@ def evaluate_rust(example):
 
 @pytest.fixture(scope="module")
 def pictures(tmp_path_factory):
-    """photo.png with its mask.png, and press.png of a ball of 40 pixels with untouched.png, where the guide's programs run."""
+    """photo.png with its mask.png; press.png, press2.png, press3.png of a ball of 40 pixels, untouched.png: where the programs run."""
     folder = tmp_path_factory.mktemp("guide")
     lights = np.array([[-0.45, 0.4, 0.8], [0.5, 0.3, 0.81], [0.05, -0.6, 0.8]])
     lights /= np.linalg.norm(lights, axis=1, keepdims=True)
@@ -65,16 +65,18 @@ def pictures(tmp_path_factory):
     cv2.imwrite(str(folder / "mask.png"), np.where(mask, 255, 0).astype(np.uint8))
 
     y, x = np.mgrid[0:180, 0:240]
-    d, edge, skirt = np.hypot(x - 130.5, y - 80.5), 26.0, 12.0
+    edge, skirt = 26.0, 12.0
     steepest = edge / np.sqrt(40**2 - edge**2)
-    inside = np.sqrt(np.maximum(40.0**2 - d**2, 0)) - np.sqrt(40**2 - edge**2) + steepest * skirt / 2
-    outside = steepest * np.maximum(skirt - (d - edge), 0) ** 2 / (2 * skirt)
-    gel = np.where(d < edge, inside, outside).astype(np.float32)
-    press = ofc.render(gel, lights, colors, params=ofc.RenderParams(noise=0.7, peak=200, cast_shadows=False))
+    for name, (x0, y0) in {"press": (130.5, 80.5), "press2": (70.5, 110.5), "press3": (175.5, 60.5)}.items():
+        d = np.hypot(x - x0, y - y0)
+        inside = np.sqrt(np.maximum(40.0**2 - d**2, 0)) - np.sqrt(40**2 - edge**2) + steepest * skirt / 2
+        outside = steepest * np.maximum(skirt - (d - edge), 0) ** 2 / (2 * skirt)
+        gel = np.where(d < edge, inside, outside).astype(np.float32)
+        press = ofc.render(gel, lights, colors, params=ofc.RenderParams(noise=0.7, peak=200, cast_shadows=False))
+        cv2.imwrite(str(folder / f"{name}.png"), press.pixels[..., ::-1])
     peak = press.scale * ofc.render(0 * gel, lights, colors).largest_modulus
     untouched = ofc.render(0 * gel, lights, colors, params=ofc.RenderParams(noise=0.7, peak=peak, seed=1))
-    for name, rendering in (("press", press), ("untouched", untouched)):
-        cv2.imwrite(str(folder / f"{name}.png"), rendering.pixels[..., ::-1])
+    cv2.imwrite(str(folder / "untouched.png"), untouched.pixels[..., ::-1])
 
     before = Path.cwd()
     os.chdir(folder)

@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 venv=../../target/python
 [ -x "$venv/bin/pip" ] || python3 -m venv "$venv"
-"$venv/bin/pip" install --quiet --disable-pip-version-check '.[files,plot,test]'
+"$venv/bin/pip" install --quiet --disable-pip-version-check '.[dask,files,plot,test]'
 "$venv/bin/ruff" format --quiet --check .
 "$venv/bin/ruff" check --quiet .
 "$venv/bin/mypy" src tests
