@@ -47,8 +47,9 @@
 /// - NaN: pixels that are NaN or infinite are left out and counted. Parameters that are not finite are refused. With
 ///   OFC_STATUS_OK an output is finite, but for infinities that its documentation names. The only NaNs in outputs say
 ///   "not known" or "no value here": in ofc_confidence, ofc_check_result, ofc_stream_drift, a covariance, ofc_paint,
-///   ofc_slant_curve_sample(), ofc_depth_integrate(), ofc_flat_field(), ofc_relief_normals(), ofc_relief, ofc_rig_normals(),
-///   ofc_paint_albedo() and ofc_paint_divide(). Their bits are 0x7ff8000000000000 and 0x7fc00000 on every target.
+///   ofc_slant_curve_sample(), ofc_depth_integrate(), ofc_flat_field(), ofc_transfer_linearize(), ofc_dark_subtract(),
+///   ofc_offset_subtract(), ofc_relief_normals(), ofc_relief, ofc_rig_normals(), ofc_paint_albedo() and ofc_paint_divide().
+///   Their bits are 0x7ff8000000000000 and 0x7fc00000 on every target.
 /// - Equations and sections are numbered as in M. S. Drew, "Direct Solution of Orientation-from-Color Problem using a
 ///   Modification of Pentland's Light Source Direction Estimator". The direct method is the method of that paper.
 
@@ -1710,6 +1711,114 @@ ofc_status ofc_stream_inliers_row(ofc_stream *stream, const ofc_image *row, uint
  * Part 5: tools
  * ================================================================================================================== */
 
+/* ---- What files hold, made what the model wants: curves, clipping, light that is not the model's ------------------ */
+
+/// What was stored of light: one of OFC_TRANSFER_*.
+typedef int32_t ofc_transfer;
+
+#define OFC_TRANSFER_SRGB 1  ///< The curve of sRGB (IEC 61966-2-1), which is that of nearly every JPEG.
+#define OFC_TRANSFER_GAMMA 2 ///< The light to the power of 1 / gamma.
+#define OFC_TRANSFER_TABLE 3 ///< A table has the light of every number that a sample can be.
+
+/// Writes the light of every number that a sample of 8 or 16 bits can be, in the numbers' own scale: full scale stays full
+/// scale. With OFC_TRANSFER_TABLE, such a table is much faster than the curve for pictures of 16 bits.
+/// @param transfer  OFC_TRANSFER_SRGB or OFC_TRANSFER_GAMMA.
+/// @param gamma  The exponent of OFC_TRANSFER_GAMMA, from 0.1 to 10; else any number.
+/// @param count  How many entries there are: 256 or 65,536.
+/// @param table  Output: the entries.
+/// @return OFC_STATUS_OK; an argument status.
+ofc_status ofc_transfer_table(ofc_transfer transfer, double gamma, int32_t count, float *table);
+
+/// Makes a picture linear that is stored with a transfer curve, as the model wants it: pixel values that are proportional to light.
+/// ofc_solve() takes the result as OFC_PIXEL_RGB32F. Full scale stays full scale, so saturated pixels are found with the
+/// largest value of the picture's samples, 255 or 65535, as ofc_lmeds_params.saturation. Floats are taken to have 1 as full
+/// scale.
+/// @param image  The picture; its mask is not looked at.
+/// @param transfer  One of OFC_TRANSFER_*.
+/// @param gamma  The exponent of OFC_TRANSFER_GAMMA, from 0.1 to 10; else any number.
+/// @param table  For OFC_TRANSFER_TABLE the light of each number from 0 on, finite; else NULL.
+/// @param table_length  256 for samples of 8 bits, 65,536 for those of 16; a picture of floats takes no table. 0 without one.
+/// @param pixels  Output: height rows of width (r, g, b) floats; NaN, which ofc_solve() leaves out, for a sample that is not
+///     finite or whose light is beyond what a float holds.
+/// @param pixels_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @return OFC_STATUS_OK; an argument status.
+ofc_status ofc_transfer_linearize(const ofc_image *image, ofc_transfer transfer, double gamma, const float *table,
+                                  int32_t table_length, float *pixels, size_t pixels_stride_bytes);
+
+/// Finds the level at which a picture saturates where that is below the largest value of its samples, as with 12 bits in 16 or
+/// floats that were clipped at 1: pixels pile up at the largest value that there is. The parameters' `saturation` takes it.
+/// @param image  The picture; pixels outside its mask count for nothing.
+/// @param level  Output: the level; 0 where nothing piles up, and where the largest value of the samples is reached, which
+///     saturates anyway.
+/// @param count  Output: how many pixels are at that level in a channel, 0 without one; may be NULL.
+/// @return OFC_STATUS_OK; an argument status.
+ofc_status ofc_saturation_find(const ofc_image *image, double *level, int32_t *count);
+
+/// Subtracts a dark frame, a picture of the same scene with the lights of the model off, from a picture. ofc_solve() takes the
+/// result as OFC_PIXEL_RGB32F. A pixel that is saturated in a channel of the picture keeps its color, and one that is saturated in
+/// the dark frame becomes full scale, so both are found again with the largest value of the picture's samples, 255 or 65535, as
+/// ofc_lmeds_params.saturation.
+/// @param image  The picture; its mask is not looked at.
+/// @param dark  The dark frame, of the same size and with samples of the same type, in any order; its mask is not looked at.
+/// @param pixels  Output: height rows of width (r, g, b) floats; NaN for a sample that is not finite in either picture.
+/// @param pixels_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @return OFC_STATUS_OK; an argument status, OFC_STATUS_INVALID_PARAMETER for a dark frame of another size or type.
+ofc_status ofc_dark_subtract(const ofc_image *image, const ofc_image *dark, float *pixels, size_t pixels_stride_bytes);
+
+/// Subtracts one color from every pixel: room light, or a black level, as ofc_offset_fit() finds it. ofc_solve() takes the
+/// result as OFC_PIXEL_RGB32F. A pixel with a saturated channel keeps its color, so it is found again with the largest value
+/// of the picture's samples, 255 or 65535, as ofc_lmeds_params.saturation.
+/// @param image  The picture; its mask is not looked at.
+/// @param offset  r, g, b in pixel values.
+/// @param pixels  Output: height rows of width (r, g, b) floats; NaN for a sample that is not finite.
+/// @param pixels_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @return OFC_STATUS_OK; an argument status.
+ofc_status ofc_offset_subtract(const ofc_image *image, const double *offset, float *pixels,
+                               size_t pixels_stride_bytes);
+
+/// What ofc_offset_fit() found.
+typedef struct ofc_offset {
+    double offset[3];       ///< The center of the ellipsoid r, g, b in pixel values: the light that is not the model's.
+    double covariance[9];   ///< The covariance of `offset`, row-major.
+    double coefficients[6]; ///< C around that center: c11, c22, c33, c12, c13, c23.
+    double deviation; ///< The robust deviation of the colors from the ellipsoid around its center, in pixel values.
+    /// The robust deviation of the colors from the best ellipsoid around black, in pixel values.
+    double deviation_around_black;
+    /// The noise of a channel by differences of neighbors, in pixel values: where the model holds, `deviation` is about as much.
+    double noise;
+    /// The square of `offset` by its covariance. Without an offset, and where the model holds, it is about 3.
+    double chi_squared;
+    int32_t count;  ///< How many colors were fitted.
+    int32_t blocks; ///< From how many parts of the picture they are, whose errors are taken to be independent.
+} ofc_offset;
+
+/// Says how many bytes of workspace ofc_offset_fit() needs: 20 for each color.
+/// @param sample_size  The parameter of the call.
+/// @return The size; 0 when an argument is invalid.
+size_t ofc_offset_workspace_size(int32_t sample_size);
+
+/// Finds light that is not the model's and the same everywhere, such as room light or a black level, as the center of the
+/// colors' ellipsoid: (rho - a)^T C (rho - a) = 1.
+///
+/// Take the inliers of ofc_solve() and its C, subtract what is found with ofc_offset_subtract(), and do it again with the picture
+/// that is left; three times are enough. Near lights, interreflection and a transfer curve look like an offset too: believe one only where
+/// `chi_squared` is above 40, `deviation` is down to the noise, and no channel's offset is above the darkest pixels.
+/// @param image  The picture.
+/// @param inlier_test  Which pixels to use, from ofc_solve(), in its solution: those that all lights reach; NULL for every
+///     usable pixel.
+/// @param coefficients  C around black, where the fit starts: c11, c22, c33, c12, c13, c23.
+/// @param sample_size  How many colors are fitted at most, at least 60; 8192 is a good number, and more is slower.
+/// @param workspace  ofc_offset_workspace_size() bytes, aligned to OFC_WORKSPACE_ALIGNMENT.
+/// @param workspace_bytes  How long the workspace is.
+/// @param found  Output: the offset.
+/// @return OFC_STATUS_OK; OFC_STATUS_UNDETERMINED where the colors do not determine a center, with nothing written;
+///     OFC_STATUS_NOT_POSITIVE_DEFINITE for a C that is no ellipsoid, with nothing written; OFC_STATUS_TOO_FEW_PIXELS for fewer
+///     than 60 inliers; an argument status.
+///
+/// Reference: S. J. Ahn, W. Rauh, H.-J. Warnecke, Pattern Recognition 34, 2001.
+ofc_status ofc_offset_fit(const ofc_image *image, const ofc_inlier_test *inlier_test, const double *coefficients,
+                          int32_t sample_size, void *workspace, size_t workspace_bytes, ofc_offset *found);
+
 /* ---- Flat-fielding, against lights that fall off across the picture --------------------------------------------- */
 
 /// What ofc_flat_field() did.
@@ -2311,6 +2420,8 @@ const char *ofc_version_string(void);
 #define OFC_CHECK_WORKSPACE_SIZE(width, height) (OFC_PIXELS(width, height) * 8)
 /// What ofc_segment_workspace_size() returns.
 #define OFC_SEGMENT_WORKSPACE_SIZE(width, height) (OFC_PIXELS(width, height) * 16)
+/// What ofc_offset_workspace_size() returns.
+#define OFC_OFFSET_WORKSPACE_SIZE(sample_size) (OFC_SIZE(sample_size) * 20)
 /// What ofc_paint_workspace_size() returns.
 #define OFC_PAINT_WORKSPACE_SIZE 200000
 /// What ofc_paint_albedo_workspace_size() returns.

@@ -2,15 +2,20 @@
 //!
 //! An [`Image`] is checked once when it is made, and read [`WINDOW`] pixels at a time. [`Usable`] says which of them are
 //! finite, not black, not saturated and not shaded; sets of pixels are bits of a [`Window`]. [`cells`] are squares of four
-//! neighbors, the stencil of every finite difference.
+//! neighbors, the stencil of every finite difference. A picture that is not linear, or holds light that is not the model's, becomes
+//! one that it is about by [`transfer`], [`dark`] and [`flat_field`]; [`saturation`] finds where it was clipped.
 
 pub mod cells;
+pub mod dark;
 mod faces;
 pub mod flat_field;
 mod image;
 mod layout;
 mod mask;
 mod pixels;
+mod rows;
+pub mod saturation;
+pub mod transfer;
 mod usable;
 mod window;
 

@@ -5,12 +5,15 @@ use core::ffi::{CStr, c_char};
 use ofc_core::check::CheckError;
 use ofc_core::color::ellipsoid::NotPositiveDefinite;
 use ofc_core::color::lmeds::FitError;
+use ofc_core::color::offset::OffsetError;
 use ofc_core::color::paint::PaintError;
 use ofc_core::color::paint::albedo::AlbedoError;
 use ofc_core::color::segment::SegmentError;
 use ofc_core::orientation::orthogonal::OrthogonalError;
 use ofc_core::picture::ImageError;
+use ofc_core::picture::dark::DarkError;
 use ofc_core::picture::flat_field::FlatFieldError;
+use ofc_core::picture::transfer::TransferError;
 use ofc_core::render::{DepthMapError, RenderError};
 use ofc_core::solve::Outcome;
 use ofc_core::stream::StreamError;
@@ -241,6 +244,20 @@ refusals! {
         FlatFieldError::Size => OFC_STATUS_INVALID_PARAMETER,
         FlatFieldError::Output => OFC_STATUS_STRIDE_TOO_SMALL,
         FlatFieldError::Background => OFC_STATUS_DARK,
+    }
+    TransferError {
+        TransferError::Exponent | TransferError::Length | TransferError::Entry => OFC_STATUS_INVALID_PARAMETER,
+        TransferError::Output(error) => Self::from(error).0,
+    }
+    DarkError {
+        DarkError::Frame | DarkError::Offset => OFC_STATUS_INVALID_PARAMETER,
+        DarkError::Output(error) => Self::from(error).0,
+    }
+    OffsetError {
+        OffsetError::Form => OFC_STATUS_NOT_POSITIVE_DEFINITE,
+        OffsetError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,
+        OffsetError::TooFewPixels => OFC_STATUS_TOO_FEW_PIXELS,
+        OffsetError::NotDetermined => OFC_STATUS_UNDETERMINED,
     }
     PaintError {
         PaintError::WorkspaceTooShort => OFC_STATUS_WORKSPACE_TOO_SMALL,

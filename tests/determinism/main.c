@@ -27,7 +27,7 @@ static void print(const char *scene, const char *group)
     digest_print(name);
 }
 
-/* The paint of every so-many-th scene: it takes as long as all the rest where doubles are emulated. */
+/* The paint and the offset of every so-many-th scene: they take as long as all the rest where doubles are emulated. */
 enum { PAINTED = 4 };
 
 int main(void)
@@ -55,6 +55,8 @@ int main(void)
         if (i % PAINTED == 0) {
             mix_paint(&image);
             print(scenes[i].name, "paint");
+            mix_transfer(&image, &fitted);
+            print(scenes[i].name, "transfer");
         }
         /* One is enough: its integrations take as long. */
         if (i == 0) {

@@ -29,6 +29,7 @@ ofc_depth_map mix_depth(const ofc_image *image);
 void mix_surface(const ofc_image *image);
 void mix_stream(const ofc_image *image);
 void mix_flat_field(const ofc_image *image);
+void mix_transfer(const ofc_image *image, const struct fitted *fitted);
 void mix_paint(const ofc_image *image);
 void mix_segments(const ofc_image *image, const struct fitted *fitted);
 

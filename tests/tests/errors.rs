@@ -3,13 +3,16 @@
 use ofc_core::check::CheckError;
 use ofc_core::color::ellipsoid::NotPositiveDefinite;
 use ofc_core::color::lmeds::FitError;
+use ofc_core::color::offset::OffsetError;
 use ofc_core::color::rank::patches::Refused;
 use ofc_core::color::segment::SegmentError;
 use ofc_core::math::arena::Need;
 use ofc_core::orientation::orthogonal::OrthogonalError;
 use ofc_core::orientation::relief::ReliefError;
 use ofc_core::picture::ImageError;
+use ofc_core::picture::dark::DarkError;
 use ofc_core::picture::flat_field::FlatFieldError;
+use ofc_core::picture::transfer::TransferError;
 use ofc_core::render::{DepthMapError, LightsError, RenderError};
 use ofc_core::stream::StreamError;
 use ofc_core::surface::completion::CompletionError;
@@ -21,7 +24,7 @@ use std::path::Path;
 #[test]
 fn every_error_says_what_is_wrong() {
     let color_deviations = [0.0; 3];
-    let errors: [Box<dyn Error>; 68] = [
+    let errors: [Box<dyn Error>; 79] = [
         Box::new(CheckError::Orientation),
         Box::new(CheckError::WorkspaceTooShort),
         Box::new(CheckError::NoInliers),
@@ -55,6 +58,17 @@ fn every_error_says_what_is_wrong() {
         Box::new(ReliefError::NotDetermined),
         Box::new(ReliefError::NotIntegrable),
         Box::new(ReliefError::HasEdge),
+        Box::new(TransferError::Exponent),
+        Box::new(TransferError::Length),
+        Box::new(TransferError::Entry),
+        Box::new(TransferError::Output(ImageError::StrideTooSmall)),
+        Box::new(DarkError::Frame),
+        Box::new(DarkError::Offset),
+        Box::new(DarkError::Output(ImageError::TooLarge)),
+        Box::new(OffsetError::Form),
+        Box::new(OffsetError::WorkspaceTooShort),
+        Box::new(OffsetError::TooFewPixels),
+        Box::new(OffsetError::NotDetermined),
         Box::new(FlatFieldError::Size),
         Box::new(FlatFieldError::Output),
         Box::new(FlatFieldError::Background),

@@ -123,6 +123,40 @@ def test_a_flat_field_makes_even_what_was_not(scene: ofc.Rendering) -> None:
         ofc.flat_field(uneven, background[1:])
 
 
+def test_what_files_hold_becomes_light(scene: ofc.Rendering) -> None:
+    light = np.clip(np.asarray(scene.pixels, np.float64), 0, 255)
+    stored = np.rint(255 * (light / 255) ** (1 / 2.2)).astype(np.uint8)
+    through = ofc.linearize(stored, ofc.Transfer.GAMMA, gamma=2.2)
+    assert np.abs(through - light).max() < 2
+    table = ofc.transfer_table(ofc.Transfer.GAMMA, 2.2)
+    assert (ofc.linearize(stored, ofc.Transfer.TABLE, table=table) == through).all()
+    assert len(ofc.transfer_table(ofc.Transfer.SRGB, bits=16)) == 65536
+    with pytest.raises(ofc.Error):
+        ofc.linearize(stored, ofc.Transfer.TABLE, table=table[1:])
+
+    pixels = np.asarray(scene.pixels, np.float32)
+    clipped = np.minimum(pixels, pixels.max() / 2)
+    found = ofc.find_saturation(clipped)
+    assert found is not None
+    assert found[0] == clipped.max()
+    assert found[1] == (clipped == clipped.max()).any(axis=-1).sum()
+    assert ofc.find_saturation(np.zeros((9, 9, 3), np.uint8)) is None
+
+
+def test_light_that_is_not_ours_is_subtracted() -> None:
+    depth, mask = dome(180, 240)
+    directions = LIGHTS / np.linalg.norm(LIGHTS, axis=1, keepdims=True)
+    scene = ofc.render(depth, directions, COLORS, mask, dtype=np.float32, params=ofc.RenderParams(peak=180, noise=0.3))
+    lit = np.asarray(scene.pixels, np.float32) + np.float32(30)
+    assert (ofc.subtract_offset(lit, (30, 30, 30)) == ofc.subtract_dark(lit, np.full_like(lit, 30))).all()
+    offset = np.zeros(3)
+    for _ in range(3):
+        offset += ofc.fit_offset(ofc.solve(ofc.subtract_offset(lit, offset), mask)).offset
+    assert np.abs(offset - 30).max() < 5
+    with pytest.raises(ValueError, match="red, green, blue"):
+        ofc.subtract_offset(lit, (30, 30))
+
+
 def test_uneven_paint_is_divided_out() -> None:
     depth, mask = dome(180, 240)
     directions = LIGHTS / np.linalg.norm(LIGHTS, axis=1, keepdims=True)

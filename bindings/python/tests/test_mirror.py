@@ -84,6 +84,7 @@ STRUCTS: dict[str, type] = {
     "ofc_check_result": ofc.Check,
     "ofc_depth_result": ofc.Depth,
     "ofc_flat_field_result": ofc.FlatField,
+    "ofc_offset": ofc.Offset,
     "ofc_paint": ofc.Paint,
     "ofc_relief": ofc.Relief,
     "ofc_region": ofc.Region,
@@ -137,6 +138,7 @@ PREFIXES: dict[type[enum.IntEnum], str] = {
     enums.ReliefClass: "RELIEF",
     enums.RigAdvice: "RIG_ADVICE",
     enums.Pass: "PASS",
+    enums.Transfer: "TRANSFER",
 }
 # Other constants with one of these prefixes.
 NO_MEMBERS = {"OFC_PAINT_DISTANCES", "OFC_PAINT_WORKSPACE_SIZE"}

@@ -3,7 +3,8 @@
 //! Near lights fall off across the field, each channel's in its own way, so that F changes from place to place. A flat surface
 //! shows by how much: divided by it, and scaled by its mean, the picture is as under distant lights.
 
-use crate::picture::{Image, Window, span};
+use super::rows;
+use crate::picture::{Image, Window};
 use core::fmt;
 
 /// A background pixel is dark, and says nothing, if a channel is below this share of the channel's mean.
@@ -79,20 +80,14 @@ pub fn divide(
     if [image.width(), image.height()] != [background.width(), background.height()] {
         return Err(FlatFieldError::Size);
     }
-    let need = span(image.width(), image.height(), 3, row_stride);
-    if need.map_or(true, |need| pixels.len() < need) {
-        return Err(FlatFieldError::Output);
-    }
     let limits = [image.sample().saturation(), background.sample().saturation()];
     let mut result = FlatField { mean: mean(background, limits[1])?, ..FlatField::default() };
     let darkest = result.mean.map(|mean| (DARK_SHARE * mean) as f32);
     let scale = result.mean.map(|mean| mean as f32);
     let mut flat = Window::new();
-    image.for_each_window(|window| {
+    let written = rows::write(image, pixels, row_stride, |window, out| {
         background.read(window.x, window.y, &mut flat);
-        let start = window.y * row_stride + window.x * 3;
-        let out = pixels.get_mut(start..start + window.len * 3).unwrap_or_default();
-        for (i, slot) in out.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+        for (i, slot) in out.iter_mut().enumerate() {
             let (color, below) = (window.pixel(i), flat.pixel(i));
             let is_seen = flat.masked >> i & 1 == 1;
             *slot = [f32::NAN; 3];
@@ -108,7 +103,7 @@ pub fn divide(
             }
         }
     });
-    Ok(result)
+    written.map_or(Err(FlatFieldError::Output), |()| Ok(result))
 }
 
 /// The mean of each channel over the pixels of the background that are finite and not saturated.

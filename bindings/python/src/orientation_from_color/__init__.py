@@ -34,10 +34,12 @@ from .enums import (
     Slants,
     Status,
     Tilt,
+    Transfer,
     Weighting,
 )
 from .errors import Error, Refused
 from .flat import FlatField, flat_field
+from .light import Offset, find_saturation, fit_offset, linearize, subtract_dark, subtract_offset, transfer_table
 from .paint import Paint, estimate_paint
 from .params import (
     DepthParams,
@@ -78,6 +80,7 @@ __all__ = [
     "LmedsParams",
     "NoRelief",
     "Norms",
+    "Offset",
     "OrientationMethod",
     "Paint",
     "PaintParams",
@@ -107,12 +110,16 @@ __all__ = [
     "Stream",
     "StreamParams",
     "Tilt",
+    "Transfer",
     "Weighting",
     "classify_patches",
     "depth_normals",
     "estimate_paint",
+    "find_saturation",
+    "fit_offset",
     "flat_field",
     "integrate",
+    "linearize",
     "normal_map",
     "normals_from_matrix",
     "pixel_counts",
@@ -120,4 +127,7 @@ __all__ = [
     "segment",
     "solve",
     "solve_relief",
+    "subtract_dark",
+    "subtract_offset",
+    "transfer_table",
 ]

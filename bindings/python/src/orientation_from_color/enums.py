@@ -237,3 +237,11 @@ class Pass(enum.IntEnum):
     REFINE = 4
     OUTWARD = 5
     INTEGRABILITY = 6
+
+
+class Transfer(enum.IntEnum):
+    """What a file stores of light."""
+
+    SRGB = 1
+    GAMMA = 2
+    TABLE = 3

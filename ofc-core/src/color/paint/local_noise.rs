@@ -1,7 +1,7 @@
 //! The noise in the colors, from second differences along rows: in all directions, and across the color's own.
 
 use super::sampler::Sampler;
-use crate::color::dispersion::CONSISTENCY;
+use crate::color::dispersion::{CONSISTENCY, SECOND_DIFFERENCE};
 use crate::color::rounding;
 use crate::math::mat3::{dot, scale};
 use crate::math::select::{kth_smallest, median_rank};
@@ -12,9 +12,6 @@ use libm::{fabs, sqrt};
 const TRIPLES: usize = 2048;
 /// Pixels that are drawn for them at most.
 const DRAWS: usize = 16 * TRIPLES;
-
-/// The root of the sum of the squares of the weights 1, -2, 1.
-const SECOND_DIFFERENCE: f64 = 2.449_489_742_783_178;
 
 /// Means of three by three pixels have a third of the noise of single ones where noise is independent. Cameras and compression
 /// make it less so: half is what the photographs have.
