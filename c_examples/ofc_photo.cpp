@@ -9,6 +9,7 @@
 #include "photo/relief.hpp"
 #include "photo/report.hpp"
 #include "photo/solve.hpp"
+#include "photo/whole.hpp"
 
 #include <cstdio>
 
@@ -114,6 +115,11 @@ int run(const Options &options)
     }
     if (result.solved())
         time_stages(solved, result);
+    if (result.solved() && options.whole()) {
+        complete(result, solved, !options.planes.empty());
+        if (!truth.empty())
+            result.median_error_deg = median_angle_deg(result.normals, truth);
+    }
 
     if (options.save_planes) {
         const cv::Mat channels[] = {picture.channel(0), picture.channel(1), picture.channel(2)};
@@ -131,6 +137,8 @@ int run(const Options &options)
         write_tiff(out / "depth.tiff", result.surface.depth);
         write_image(out / "depth.png", options.depth.picture(result.surface));
         write_mesh(out / "mesh.ply", result.surface, picture.display());
+        if (result.whole)
+            write_image(out / "classes.png", class_picture(*result.whole, cv::Rect({}, picture.size())));
     }
     if (!result.uncertainty.empty()) {
         write_tiff(out / "uncertainty.tiff", result.uncertainty);

@@ -49,7 +49,7 @@ refuses() {
 # Bounds are what was measured, which stands beside them, and a margin of 3 %: the library gives the same bits everywhere, but
 # the scenes are made with the C library's exp and sin. What exceeds a bound has become worse.
 
-expect 0 ./c_examples/run.sh --out "$out/scene"
+expect 0 ./c_examples/run.sh --lit-only --out "$out/scene"
 says "median error"
 says "shadows    rejected (auto): left out 32080 pixels"
 for file in normals.png normals.tiff inliers.png report.json overview.png depth.tiff depth.png mesh.ply uncertainty.tiff \
@@ -75,6 +75,15 @@ json "$out/scene/report.json" "near([r['depth']['range'][0], $(sed -n 's/Minimum
 json "$out/scene/report.json" "abs(r['depth']['range'][0] - $(sed -n 's/Minimum point .* \(.*\))/\1/p' "$out/mesh")) < 1e-3"
 
 photo=target/c_examples/ofc_photo
+# The whole surface, which is the default: no pixel of the mask is left out.
+expect 0 "$photo" --out "$out/whole"
+says "lights     tilt   20.6"
+json "$out/whole/report.json" 'r["median_error_deg"] < 1.75 and r["depth"]["regions"] == 1 and r["depth"]["pixels"] == 101370' # 1.69
+json "$out/whole/report.json" 'len(r["surface"]["lights"]) == 3 and r["surface"]["pixels"]["two lights"] > 30000'
+json "$out/whole/report.json" 'r["surface"]["pixels"]["interpolated"] < 1000 and r["uncertainty"]["median_deg"] < 4.6' # 4.34
+picture "$out/whole/overview.png" 2180 1392 282828:1700 0072b2:10000 d55e00:300
+picture "$out/whole/classes.png" 654 472 0072b2:10000
+[ ! -e "$out/scene/classes.png" ] || fail "--lit-only made classes"
 expect 0 "$photo" --help
 says "--planes"
 expect 2 "$photo" --no-such-option
@@ -103,7 +112,7 @@ json "$out/third/report.json" 'r["median_error_deg"] < 0.001'
 mkdir "$out/behind"
 python3 tests/normals_tiff.py light "$out/scene/normals.tiff" "$out/behind"
 expect 0 "$photo" --planes "$out/behind/r.tiff" "$out/behind/g.tiff" "$out/behind/b.tiff" --truth "$out/scene/normals.tiff" \
-    --out "$out/behind"
+    --lit-only --out "$out/behind"
 says "above 90 degrees: a light from behind"
 json "$out/behind/report.json" 'r["from_behind"] == [False, False, True] and r["median_error_deg"] < 0.87' # 0.84
 json "$out/behind/report.json" 'near(r["slant_deg"], [40, 40, 105], 0.83)' # 0.80
@@ -230,7 +239,7 @@ json "$out/paper/report.json" 'r["confidence"]["expected_error_deg"] is None and
 expect 0 "$photo" --hollow --out "$out/hollow"
 says "hollow, as --hollow says"
 json "$out/hollow/report.json" 'r["confidence"]["convexity"] < 0 and r["confidence"]["expected_error_deg"] < 0.99 and r["check"]["turn"]["deg"] > 100'
-expect 0 "$photo" --convex --out "$out/hollow"
+expect 0 "$photo" --convex --lit-only --out "$out/hollow"
 says "convex, as --convex says"
 json "$out/hollow/report.json" 'r["confidence"]["convexity"] > 0 and r["median_error_deg"] < 2.64'
 expect 2 "$photo" --convex --hollow
@@ -273,7 +282,7 @@ says "mean error"
 
 data=${OFC_DATA:-../shared/data}
 if [ -d "$data" ]; then
-    expect 0 "$photo" "$data/cat_figurine/rgb.png" --mask "$data/cat_figurine/mask.png" --paint even --out "$out/cat"
+    expect 0 "$photo" "$data/cat_figurine/rgb.png" --mask "$data/cat_figurine/mask.png" --paint even --lit-only --out "$out/cat"
     json "$out/cat/report.json" 'near([r["inliers"]["after_norms"]], 90073, 2700)'
     # Near lights: divided by the gel alone, the ball of 9.5 mm is nearer to the truth.
     ball=$data/gelsight_ball_9mm
@@ -285,7 +294,7 @@ if [ -d "$data" ]; then
     expect 0 "$photo" "$data/cat_figurine/rgb.png" --mask "$data/cat_figurine/mask.png" --save-planes --out "$out/planes"
     for fit in median squares; do
         expect 0 "$photo" --planes "$out/planes/plane_r.png" "$out/planes/plane_g.png" "$out/planes/plane_b.png" \
-            --mask "$data/cat_figurine/mask.png" --paint even --truth "$out/cat/normals.tiff" --fit "$fit" --out "$out/stereo_$fit"
+            --mask "$data/cat_figurine/mask.png" --paint even --lit-only --truth "$out/cat/normals.tiff" --fit "$fit" --out "$out/stereo_$fit"
     done
     json "$out/stereo_median/report.json" 'r["median_error_deg"] < 0.001'
     json "$out/stereo_squares/report.json" 'r["parameters"]["fit"] == "squares" and near([r["median_error_deg"]], 9.87, 0.3)'

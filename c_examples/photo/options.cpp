@@ -78,6 +78,9 @@ Options parse_options(int argc, char **argv)
                     "What is printed: a summary, or Table 2 and the checks of section 5 for the paper's direct method, whose\n"
                     "figures are then written too (default: short)")
         ->check(CLI::IsMember({"short", "paper"}));
+    line.add_flag("--lit-only", options.lit_only,
+                  "Normals and depth of the pixels that see all lights and obey the model; without it the whole surface in the\n"
+                  "mask, shadows too. --integrate with anything but poisson includes it");
     line.add_flag("--save-planes", options.save_planes, "Write the channels as three gray pictures, as --planes takes them");
     line.parse_or_exit(argc, argv, [&] { check_together(options); });
     options.out = line.out;

@@ -21,10 +21,13 @@ struct Options {
     PaintOption paint;
     DepthOptions depth;
     bool convex = false, hollow = false; // what the caller knows of the surface
+    bool lit_only = false;    // normals of pixels that see all lights, and nothing else
     bool save_planes = false; // the channels as three gray pictures
     std::string out;
 
     bool direct() const { return orientation == "direct"; }
+    // Shadows and all else that the mask holds. How to span gaps is a question of lit pixels alone.
+    bool whole() const { return !lit_only && depth.method == "poisson"; }
     bool paper_report() const { return report == "paper"; }
 
     // What is known of a relief on a plane.

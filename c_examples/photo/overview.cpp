@@ -3,6 +3,7 @@
 #include "common/plot_colors.hpp"
 #include "common/plot_slants.hpp"
 #include "common/surface_view.hpp"
+#include "photo/whole.hpp"
 
 #include <opencv2/imgproc.hpp>
 
@@ -48,7 +49,10 @@ cv::Mat overview(const Picture &picture, const Result &result)
             sheet.add(title, std::string("none: see the reason below"));
     };
     sheet.add("input × mask", shown(part));
-    sheet.add("inliers (white), rejected (orange)", inlier_picture(shown, result)(part));
+    if (result.whole)
+        sheet.add("what each pixel sees", class_picture(*result.whole, part));
+    else
+        sheet.add("inliers (white), rejected (orange)", inlier_picture(shown, result)(part));
     add("normals: x right, y up, z out as r, g, b", result.solved(), [&] { return normal_map(result.normals)(part); });
     add("the surface relit from (1, 1, 1)", result.solved(), [&] { return shade(result.normals, {1, 1, 1})(part); });
     // Eqs. 25 play no part in the joint method, and the direct method does not know how sure it is.

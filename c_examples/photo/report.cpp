@@ -3,6 +3,7 @@
 #include "common/reason.hpp"
 #include "photo/text.hpp"
 #include "photo/trust.hpp"
+#include "photo/whole.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -165,7 +166,7 @@ void add_wrapped(std::vector<Line> &lines, std::string label, std::string text)
 
 cv::Mat uncertainty_picture(const Result &result, cv::Rect part)
 {
-    cv::Vec2d range(quantile(result.uncertainty, 0.01), quantile(result.uncertainty, 0.99));
+    cv::Vec2d range(0, quantile(result.uncertainty, 0.99));
     if (!(range[0] <= range[1]))
         range = {0, 1}; // there are no values
     return color_picture(result.uncertainty(part), range,
@@ -227,6 +228,8 @@ void write_report(const std::string &path, const Result &result)
         report["check"] = check_report(*result.check);
     if (result.solved())
         report["depth"] = result.depth.report(result.surface);
+    if (result.whole)
+        report["surface"] = ::report(*result.whole);
     if (!result.uncertainty.empty())
         report["uncertainty"] = uncertainty(result);
     if (result.median_error_deg)
@@ -277,6 +280,9 @@ std::vector<Line> summary(const Result &result)
         }
         lines.push_back({channel_names[c], line});
     }
+    if (result.whole)
+        for (const Line &line : summary(*result.whole))
+            lines.push_back(line);
     if (!result.uncertainty.empty())
         lines.push_back({"1 sigma", text("%.2f degrees at half of the normals, %.2f at nine tenths; noise %.2f",
                                          quantile(result.uncertainty, 0.5), quantile(result.uncertainty, 0.9),
@@ -285,10 +291,12 @@ std::vector<Line> summary(const Result &result)
         lines.push_back({"normals", text("median error %.2f degrees", *result.median_error_deg)});
     if (const ofc_depth_result &d = result.surface.result; result.surface.integrated()) {
         const cv::Vec2d range = range_of(result.surface.depth);
-        lines.push_back({"depth", text("%s: %.4g %s over %d pixels in %d region%s, %s at residual %.0e in %d cycles",
-                                       result.depth.method.c_str(), range[1] - range[0], result.depth.unit(), d.pixel_count,
-                                       d.regions, d.regions == 1 ? "" : "s", d.converged ? "converged" : "stopped",
-                                       d.residual, d.cycles)});
+        std::string line = text("%s: %.4g %s over %d pixels in %d region%s, %s", result.depth.method.c_str(), range[1] - range[0],
+                                result.depth.unit(), d.pixel_count, d.regions, d.regions == 1 ? "" : "s",
+                                d.converged ? "converged" : "stopped");
+        if (!result.whole)
+            line += text(" at residual %.0e in %d cycles", d.residual, d.cycles);
+        lines.push_back({"depth", line});
     }
     return lines;
 }

@@ -4,8 +4,8 @@
 #include "common/draw.hpp"
 #include "photo/result.hpp"
 
-// A part of the uncertainty in colors, beside a bar in degrees. The first and last hundredth of the values share
-// the first and last color.
+// A part of the uncertainty in colors, beside a bar in degrees that begins at 0. The last hundredth of the values has
+// the last color.
 cv::Mat uncertainty_picture(const Result &result, cv::Rect part);
 
 // Adds a line; a long one becomes several, of which only the first has the label.

@@ -12,6 +12,12 @@
 #include <utility>
 #include <vector>
 
+// The whole surface, which then is in the result's normals, uncertainty and depth.
+struct Whole {
+    cv::Mat classes; // CV_8U, OFC_SURFACE_*
+    ofc_surface_result result = {};
+};
+
 struct Result {
     ofc_status status = OFC_STATUS_OK;
     ofc_solve_params params = {};
@@ -24,6 +30,7 @@ struct Result {
     ofc_covariance covariance = {}; // where the uncertainty is known
     DepthOptions depth;             // what was wanted of it
     Surface surface;                // empty where there are no normals
+    std::optional<Whole> whole;     // where it was made
     std::optional<Paint> paint;     // where it was looked for
     std::optional<ofc_check_result> check; // where there are normals
     std::vector<std::pair<std::string, double>> milliseconds; // by stage, in the order they run
