@@ -176,6 +176,26 @@ def test_uneven_paint_is_divided_out() -> None:
     assert gray.value.status > 0
 
 
+def test_the_whole_surface_has_a_normal_for_every_pixel(scene: ofc.Rendering) -> None:
+    mask = (scene.normals != 0).any(axis=-1)
+    solution = ofc.solve(scene.pixels, mask)
+    surface = solution.complete(params=ofc.SurfaceParams(pixel_pitch=0.1))
+    assert ((surface.classes != ofc.SurfaceClass.OUTSIDE) == mask).all()
+    assert np.allclose(np.linalg.norm(surface.normals[mask], axis=-1), 1, atol=1e-3)
+    assert (np.isfinite(surface.depth) == mask).all()
+    assert np.median(angles(surface.normals, scene.normals)) < 4
+    assert surface.class_counts[ofc.SurfaceClass.THREE_LIGHTS] == np.count_nonzero(surface.classes == 1)
+    assert surface.sees(0)[surface.classes == 1].all()
+    assert not surface.doubtful[~mask].any()
+    assert "three lights" in repr(surface)
+    assert len(surface.plot().axes) == 7
+    with pytest.raises(ValueError, match="lights are"):
+        surface.sees(3)
+    direct = ofc.solve(scene.pixels, mask, params=ofc.SolveParams(orientation_method=ofc.OrientationMethod.DIRECT))
+    with pytest.raises(ofc.Error):
+        direct.complete()
+
+
 def press(x0: float, y0: float, seed: int = 0) -> tuple[ofc.Rendering, ofc.Rendering]:
     """A ball of radius 40 pixels in a gel that comes up in a parabola around it, and the gel untouched."""
     y, x = np.mgrid[0:180, 0:240]

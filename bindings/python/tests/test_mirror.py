@@ -89,6 +89,9 @@ STRUCTS: dict[str, type] = {
     "ofc_relief": ofc.Relief,
     "ofc_region": ofc.Region,
     "ofc_rig_model": ofc.RigModel,
+    "ofc_surface_light": ofc.SurfaceLight,
+    "ofc_surface_result": ofc.Surface,
+    "ofc_surface_params": ofc.SurfaceParams,
     "ofc_rendering": ofc.Rendering,
     "ofc_stream_drift": ofc.Drift,
     "ofc_lmeds_params": ofc.LmedsParams,
@@ -137,11 +140,19 @@ PREFIXES: dict[type[enum.IntEnum], str] = {
     enums.NoRelief: "NO_RELIEF",
     enums.ReliefClass: "RELIEF",
     enums.RigAdvice: "RIG_ADVICE",
+    enums.SurfaceClass: "SURFACE",
+    enums.DualSource: "DUAL",
     enums.Pass: "PASS",
     enums.Transfer: "TRANSFER",
 }
 # Other constants with one of these prefixes.
-NO_MEMBERS = {"OFC_PAINT_DISTANCES", "OFC_PAINT_WORKSPACE_SIZE"}
+NO_MEMBERS = {
+    "OFC_PAINT_DISTANCES",
+    "OFC_PAINT_WORKSPACE_SIZE",
+    "OFC_SURFACE_CLASS",
+    "OFC_SURFACE_FIRST_LIGHT",
+    "OFC_SURFACE_DOUBTFUL",
+}
 
 
 def test_every_enum_has_a_prefix() -> None:

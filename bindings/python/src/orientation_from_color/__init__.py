@@ -18,6 +18,7 @@ from .depth import Depth, depth_normals, integrate
 from .enums import (
     Convexity,
     DepthMethod,
+    DualSource,
     Evidence,
     Fallback,
     Fit,
@@ -33,6 +34,7 @@ from .enums import (
     ShadowRejection,
     Slants,
     Status,
+    SurfaceClass,
     Tilt,
     Transfer,
     Weighting,
@@ -50,6 +52,7 @@ from .params import (
     SegmentParams,
     SolveParams,
     StreamParams,
+    SurfaceParams,
 )
 from .picture import Picture
 from .plot import normal_map
@@ -60,6 +63,7 @@ from .segmentation import Region, Segmentation, classify_patches, segment
 from .solution import Solution, normals_from_matrix, pixel_counts, solve
 from .stages import Check, Covariance, PixelCounts
 from .stream import Drift, Frame, Stream
+from .surface import Surface, SurfaceLight
 
 __version__: str = ffi.string(lib.ofc_version_string()).decode()
 
@@ -71,6 +75,7 @@ __all__ = [
     "DepthMethod",
     "DepthParams",
     "Drift",
+    "DualSource",
     "Error",
     "Evidence",
     "Fallback",
@@ -109,6 +114,10 @@ __all__ = [
     "Status",
     "Stream",
     "StreamParams",
+    "Surface",
+    "SurfaceClass",
+    "SurfaceLight",
+    "SurfaceParams",
     "Tilt",
     "Transfer",
     "Weighting",

@@ -228,6 +228,26 @@ class ReliefClass(enum.IntEnum):
     CONTACT = 3
 
 
+class SurfaceClass(enum.IntEnum):
+    """What is known of a pixel of the whole surface."""
+
+    OUTSIDE = 0
+    THREE_LIGHTS = 1
+    TWO_LIGHTS = 2
+    ONE_LIGHT = 3
+    INTERPOLATED = 4
+    REJECTED = 5
+
+
+class DualSource(enum.IntEnum):
+    """How it is known what a light's shadow leaves of a color."""
+
+    NONE = 0
+    DIRECTIONS = 1
+    SEARCH = 2
+    REJECTED = 3
+
+
 class Pass(enum.IntEnum):
     """What the rows of a stream's frame are for."""
 

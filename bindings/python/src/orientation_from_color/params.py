@@ -101,6 +101,15 @@ class ReliefParams:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
+class SurfaceParams:
+    """How Solution.complete() works."""
+
+    pixel_pitch: float = 1.0
+    seed: int = 0
+    channels_are_lights: bool = False
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
 class SegmentParams:
     """How segment() works."""
 

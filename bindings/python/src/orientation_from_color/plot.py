@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .rendering import Rendering
     from .segmentation import Segmentation
     from .solution import Solution
+    from .surface import Surface
 
 
 def normal_map(normals: npt.NDArray[np.floating[Any]]) -> npt.NDArray[np.uint8]:
@@ -49,6 +50,20 @@ def depth(found: Depth) -> Figure:
     normals = found.normals()
     light = np.array([-1.0, 1.0, 1.0]) / np.sqrt(3)
     _image(raking, np.clip(normals @ light, 0, 1), "lit from the upper left")
+    return figure
+
+
+def surface(found: Surface) -> Figure:
+    """The classes, the normals, how sure they are, and the depth."""
+    figure, (classes, normals, sigma, height) = _panels(4, found.depth.shape)
+    inside = found.classes != 0
+    shown = classes.imshow(np.ma.masked_equal(found.classes, 0), cmap="tab10", vmin=-0.5, vmax=9.5, interpolation="nearest")
+    names = classes.figure.colorbar(shown, ax=classes, shrink=0.8, ticks=range(1, 6), boundaries=np.arange(0.5, 6))
+    names.set_ticklabels(["three lights", "two", "one", "interpolated", "rejected"])
+    classes.set_title("what is known of a pixel")
+    _image(normals, normal_map(found.normals), "normals: x red, y green, z blue")
+    _scale(sigma, np.where(inside, np.degrees(found.uncertainty), np.nan), "1 sigma of the normals, degrees")
+    _scale(height, found.depth, "depth toward the camera")
     return figure
 
 

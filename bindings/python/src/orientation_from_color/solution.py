@@ -14,7 +14,7 @@ from ._arrays import output, row_stride
 from ._native import ffi, lib
 from .enums import Evidence, Reason, Slants, Status
 from .errors import Error, Refused
-from .params import SolveParams
+from .params import SolveParams, SurfaceParams
 from .picture import Channels, Photo, Picture, picture_of
 from .report import Report
 from .stages import (
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .depth import Depth
+    from .surface import Surface
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -149,6 +150,23 @@ class Solution(Report):
         surface = ffi.NULL if depth is None else depth.as_map()
         _abi.check(lib.ofc_check(picture.struct, self.struct, surface, _abi.pointer("void *", memory), need, found))
         return _abi.read(Check, found)
+
+    def complete(
+        self,
+        photo: Photo | None = None,
+        mask: npt.ArrayLike | None = None,
+        *,
+        channels: Channels = "rgb",
+        params: SurfaceParams = SurfaceParams(),
+    ) -> Surface:
+        """The whole surface: a normal, its uncertainty, a depth and a class for every pixel of the mask.
+
+        Raises:
+            Error: NO_COVARIANCE for a solution by the direct method.
+        """
+        from .surface import complete
+
+        return complete(self, self._picture(photo, mask, channels), params)
 
     def plot(self) -> Figure:
         """The picture, its inliers, the normals and how sure they are, by matplotlib."""
