@@ -49,7 +49,7 @@ def linearize(
 
 
 def find_saturation(photo: Photo, mask: npt.ArrayLike | None = None, *, channels: Channels = "rgb") -> tuple[float, int] | None:
-    """The level below full scale at which pixels pile up, for LmedsParams(saturation=level), and how many do; None without one."""
+    """The level below full scale at which pixels pile up, for LmedsParams(saturation=level), and how many do; or None."""
     picture = picture_of(photo, mask, channels)
     level, count = ffi.new("double *"), ffi.new("int32_t *")
     _abi.check(lib.ofc_saturation_find(picture.struct, level, count))
