@@ -12,7 +12,7 @@
 //! leave open is chosen so that the normals are those of one surface. `docs/whole-surface.md` derives this.
 //!
 //! # Scratch
-//! [`need`]: what [`depth`](super::depth) takes and one number more for each pixel.
+//! [`need`]: what [`depth`] takes and one number more for each pixel.
 
 mod attached;
 mod boxes;
