@@ -541,7 +541,7 @@ typedef struct ofc_pixel_counts {
 typedef struct ofc_estimate {
     double value;          ///< The estimate.
     double standard_error; ///< The standard error of the estimate.
-    double t;              ///< The estimate divided by its standard error.
+    double t;              ///< The estimate divided by its standard error; infinite where that is 0.
     double p;              ///< The two-sided p value of t: how likely so large a t is if the true value is 0.
     double low;            ///< The lower confidence limit.
     double high;           ///< The upper confidence limit.
@@ -906,7 +906,8 @@ size_t ofc_norm_location_workspace_size(int32_t width, int32_t height);
 /// @param workspace_bytes  How long the workspace is.
 /// @param location  Output: location and dispersion of the lengths.
 /// @param accepted  Output: `inlier_test` with the band of lengths set.
-/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS for fewer than two inliers; an argument status.
+/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS for fewer than two inliers; an argument status,
+///     OFC_STATUS_INVALID_PARAMETER also for a C that makes most lengths too large for a float.
 ///
 /// Reference: section 2.2.
 ofc_status ofc_norm_location(const ofc_image *image, const double *coefficients, const ofc_inlier_test *inlier_test,
@@ -1050,7 +1051,8 @@ typedef int32_t ofc_slant_clamping;
 /// The slant of one row of F, estimated without the other rows.
 typedef struct ofc_slant_estimate {
     double slant_rad; ///< The slant in radians.
-    /// What the slant follows from. For Pentland it is the squared sine of the slant by eq. 22, which may exceed 1; for
+    /// What the slant follows from. For Pentland it is the squared sine of the slant by eq. 22, which may exceed 1 and is infinite
+    /// where neighboring pixels differ by the same everywhere; for
     /// Lee and Rosenfeld it is root mean square over mean; for Zheng and Chellappa it is mean over root mean square.
     double statistic;
     ofc_slant_clamping clamping; ///< OFC_SLANT_NOT_CLAMPED or one of OFC_SLANT_CLAMPED_*.
@@ -1099,7 +1101,7 @@ ofc_status ofc_channel_maxima(const ofc_image *image, const ofc_inlier_test *inl
 
 /// Finds all slants in [0, pi/2] that are consistent with three tilts and the angles between the rows of F: every
 /// solution of eqs. 24, on all eight branches of eqs. 25.
-/// @param tilt_rad  Three tilts in radians.
+/// @param tilt_rad  Three tilts in radians, of finite differences.
 /// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
 /// @param candidates  Output: OFC_MAX_CANDIDATES structs, of which the first `count` are written, by ascending first
 ///     slant; their `integral` is 0.
@@ -1112,7 +1114,7 @@ ofc_status ofc_constrained_slants_find(const double *tilt_rad, const double *cos
 
 /// Finds the slants in [0, pi/2] that satisfy eqs. 24 best in least squares; ofc_solve() falls back on them where eqs.
 /// 24 have no solution.
-/// @param tilt_rad  Three tilts in radians.
+/// @param tilt_rad  Three tilts in radians, of finite differences.
 /// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
 /// @param slants  Output: the slants; `branch` and `integral` are 0.
 /// @return OFC_STATUS_OK; an argument status.
@@ -1122,7 +1124,7 @@ ofc_status ofc_constrained_slants_least_squares(const double *tilt_rad, const do
 
 /// Samples f(sigma1) on one branch of eqs. 25, the curve of Figures 2 and 4(a). Where f(sigma1) equals sigma1 is a
 /// solution, if the other slants are in their range.
-/// @param tilt_rad  Three tilts in radians.
+/// @param tilt_rad  Three tilts in radians, of finite differences.
 /// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
 /// @param branch  The branch, from 1 for the signs (+,+,+) of the square roots to 8 for (-,-,-).
 /// @param count  How many samples to take evenly over [0, pi/2] with both ends, at least 2.
@@ -1144,7 +1146,7 @@ ofc_status ofc_slant_curve_sample(const double *tilt_rad, const double *cosines,
 /// @param rank_threshold  Singular values below this ratio to the largest are zero, in [0, 1); ofc_solve() uses 1e-3.
 /// @param orientation  Output: F and its inverse. The inverse is the pseudo-inverse where the rank is below 3.
 /// @return OFC_STATUS_OK; OFC_STATUS_RANK_DEFICIENT when the rank is below 3, with `orientation` written; an argument
-///     status.
+///     status, OFC_STATUS_INVALID_PARAMETER also for lengths so large or small that a number of `orientation` would not be finite.
 ///
 /// Reference: section 3.4, steps 5 and 6, eq. 19.
 ofc_status ofc_orientation_compose(const double *norms, const double *tilt_rad, const double *slant_rad,
@@ -1267,7 +1269,7 @@ size_t ofc_constrained_slants_integrable_workspace_size(int32_t width, int32_t h
 /// @param image  The picture.
 /// @param inlier_test  Which pixels to use; NULL for every usable pixel.
 /// @param norms  Three lengths of the rows of F, > 0.
-/// @param tilt_rad  Three tilts of the rows of F in radians.
+/// @param tilt_rad  Three tilts of the rows of F in radians, of finite differences.
 /// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
 /// @param slack  How far the root mean square residual of eqs. 24 may exceed the smallest one, >= 0; ofc_solve() uses
 ///     0.05.
@@ -1957,8 +1959,8 @@ ofc_status ofc_paint_albedo(const ofc_image *image, const ofc_paint_params *para
 /// @param params  The parameters.
 /// @param albedo  Height rows of width floats, as ofc_paint_albedo() makes them.
 /// @param albedo_stride_bytes  Bytes from one row to the next, a multiple of 4.
-/// @param pixels  Output: height rows of width (r, g, b) floats; NaN, which ofc_solve() leaves out, where a pixel is not usable
-///     or its albedo not above zero and finite.
+/// @param pixels  Output: height rows of width (r, g, b) floats; NaN, which ofc_solve() leaves out, where a pixel is not usable,
+///     its albedo not above zero and finite, or the quotient too large for a float.
 /// @param pixels_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
 /// @return OFC_STATUS_OK; an argument status.
 ofc_status ofc_paint_divide(const ofc_image *image, const ofc_paint_params *params, const float *albedo,

@@ -48,7 +48,8 @@ pub struct ofc_disc {
 pub struct ofc_slant_estimate {
     /// The slant in radians.
     pub slant_rad: f64,
-    /// What the slant follows from. For Pentland it is the squared sine of the slant by eq. 22, which may exceed 1; for
+    /// What the slant follows from. For Pentland it is the squared sine of the slant by eq. 22, which may exceed 1 and is infinite
+    /// where neighboring pixels differ by the same everywhere; for
     /// Lee and Rosenfeld it is root mean square over mean; for Zheng and Chellappa it is mean over root mean square.
     pub statistic: f64,
     /// OFC_SLANT_NOT_CLAMPED or one of OFC_SLANT_CLAMPED_*.

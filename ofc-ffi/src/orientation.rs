@@ -44,7 +44,7 @@ pub(crate) fn solved(solution: &ofc_solution) -> Result<Orientation, Refusal> {
 /// @param rank_threshold  Singular values below this ratio to the largest are zero, in [0, 1); ofc_solve() uses 1e-3.
 /// @param orientation  Output: F and its inverse. The inverse is the pseudo-inverse where the rank is below 3.
 /// @return OFC_STATUS_OK; OFC_STATUS_RANK_DEFICIENT when the rank is below 3, with `orientation` written; an argument
-///     status.
+///     status, OFC_STATUS_INVALID_PARAMETER also for lengths so large or small that a number of `orientation` would not be finite.
 ///
 /// Reference: section 3.4, steps 5 and 6, eq. 19.
 #[unsafe(no_mangle)]
@@ -64,6 +64,9 @@ pub unsafe extern "C" fn ofc_orientation_compose(
         let finite = [norms, tilts, slants].iter().flatten().all(|value| value.is_finite());
         ensure(finite && (0.0..1.0).contains(&rank_threshold), OFC_STATUS_INVALID_PARAMETER)?;
         let orientation = Orientation::new(compose(norms, slants, tilts), rank_threshold);
+        let Orientation { f, f_inverse, singular_values, .. } = &orientation;
+        let mut numbers = f.iter().chain(f_inverse).flatten().chain(singular_values);
+        ensure(numbers.all(|number| number.is_finite()), OFC_STATUS_INVALID_PARAMETER)?;
         *result = orientation.to_c();
         Ok(if orientation.rank == 3 { OFC_STATUS_OK } else { OFC_STATUS_RANK_DEFICIENT })
     })

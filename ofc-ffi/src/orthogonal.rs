@@ -218,7 +218,7 @@ pub extern "C" fn ofc_constrained_slants_integrable_workspace_size(
 /// @param image  The picture.
 /// @param inlier_test  Which pixels to use; NULL for every usable pixel.
 /// @param norms  Three lengths of the rows of F, > 0.
-/// @param tilt_rad  Three tilts of the rows of F in radians.
+/// @param tilt_rad  Three tilts of the rows of F in radians, of finite differences.
 /// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
 /// @param slack  How far the root mean square residual of eqs. 24 may exceed the smallest one, >= 0; ofc_solve() uses
 ///     0.05.

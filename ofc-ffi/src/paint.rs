@@ -226,8 +226,8 @@ pub unsafe extern "C" fn ofc_paint_albedo(
 /// @param params  The parameters.
 /// @param albedo  Height rows of width floats, as ofc_paint_albedo() makes them.
 /// @param albedo_stride_bytes  Bytes from one row to the next, a multiple of 4.
-/// @param pixels  Output: height rows of width (r, g, b) floats; NaN, which ofc_solve() leaves out, where a pixel is not usable
-///     or its albedo not above zero and finite.
+/// @param pixels  Output: height rows of width (r, g, b) floats; NaN, which ofc_solve() leaves out, where a pixel is not usable,
+///     its albedo not above zero and finite, or the quotient too large for a float.
 /// @param pixels_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
 /// @return OFC_STATUS_OK; an argument status.
 #[unsafe(no_mangle)]

@@ -143,7 +143,8 @@ pub extern "C" fn ofc_norm_location_workspace_size(width: i32, height: i32) -> u
 /// @param workspace_bytes  How long the workspace is.
 /// @param location  Output: location and dispersion of the lengths.
 /// @param accepted  Output: `inlier_test` with the band of lengths set.
-/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS for fewer than two inliers; an argument status.
+/// @return OFC_STATUS_OK; OFC_STATUS_TOO_FEW_PIXELS for fewer than two inliers; an argument status,
+///     OFC_STATUS_INVALID_PARAMETER also for a C that makes most lengths too large for a float.
 ///
 /// Reference: section 2.2.
 #[unsafe(no_mangle)]
@@ -169,6 +170,9 @@ pub unsafe extern "C" fn ofc_norm_location(
         ensure(finite && rejection > 0.0, OFC_STATUS_INVALID_PARAMETER)?;
         let found = norms::location(&picture, &inliers, &form, workspace);
         let found = found.ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
+        let is_finite =
+            [found.location, found.median_distance, found.dispersion].iter().all(|n| n.is_finite());
+        ensure(is_finite, OFC_STATUS_INVALID_PARAMETER)?;
         *location = found.to_c();
         *accepted = Inliers { norm: Band::norm(form, &found, rejection), ..inliers }.to_c();
         Ok(OFC_STATUS_OK)

@@ -11,7 +11,7 @@ const _: () = assert!(OFC_MAX_CANDIDATES == MAX_CANDIDATES, "the header says wha
 to_c!(SlantRoot => ofc_slants { residual, branch; slant_rad: slants } zero { integral, reserved });
 
 impl Call<'_> {
-    /// Three tilts, which are any finite angles, and three cosines in [-1, 1].
+    /// Three tilts, which are any angles of finite differences, and three cosines in [-1, 1].
     pub(crate) fn tilts_and_cosines(
         &mut self,
         tilt_rad: *const f64,
@@ -19,7 +19,8 @@ impl Call<'_> {
     ) -> Result<([f64; 3], [f64; 3]), Refusal> {
         let tilts = self.input_array::<f64, 3>(tilt_rad)?;
         let cosines = self.input_array::<f64, 3>(cosines)?;
-        ensure(tilts.iter().all(|tilt| tilt.is_finite()), OFC_STATUS_INVALID_PARAMETER)?;
+        let [a, b, c] = tilts;
+        ensure([a - b, a - c, b - c].iter().all(|turn| turn.is_finite()), OFC_STATUS_INVALID_PARAMETER)?;
         ensure(cosines.iter().all(|h| (-1.0..=1.0).contains(h)), OFC_STATUS_INVALID_PARAMETER)?;
         Ok((tilts, cosines))
     }
@@ -27,7 +28,7 @@ impl Call<'_> {
 
 /// Finds all slants in [0, pi/2] that are consistent with three tilts and the angles between the rows of F: every
 /// solution of eqs. 24, on all eight branches of eqs. 25.
-/// @param tilt_rad  Three tilts in radians.
+/// @param tilt_rad  Three tilts in radians, of finite differences.
 /// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
 /// @param candidates  Output: OFC_MAX_CANDIDATES structs, of which the first `count` are written, by ascending first
 ///     slant; their `integral` is 0.
@@ -58,7 +59,7 @@ pub unsafe extern "C" fn ofc_constrained_slants_find(
 
 /// Finds the slants in [0, pi/2] that satisfy eqs. 24 best in least squares; ofc_solve() falls back on them where eqs.
 /// 24 have no solution.
-/// @param tilt_rad  Three tilts in radians.
+/// @param tilt_rad  Three tilts in radians, of finite differences.
 /// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
 /// @param slants  Output: the slants; `branch` and `integral` are 0.
 /// @return OFC_STATUS_OK; an argument status.
@@ -86,7 +87,7 @@ pub unsafe extern "C" fn ofc_constrained_slants_least_squares(
 
 /// Samples f(sigma1) on one branch of eqs. 25, the curve of Figures 2 and 4(a). Where f(sigma1) equals sigma1 is a
 /// solution, if the other slants are in their range.
-/// @param tilt_rad  Three tilts in radians.
+/// @param tilt_rad  Three tilts in radians, of finite differences.
 /// @param cosines  The cosines h12, h13, h23, each in [-1, 1].
 /// @param branch  The branch, from 1 for the signs (+,+,+) of the square roots to 8 for (-,-,-).
 /// @param count  How many samples to take evenly over [0, pi/2] with both ends, at least 2.

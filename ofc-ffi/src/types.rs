@@ -133,7 +133,7 @@ pub struct ofc_estimate {
     pub value: f64,
     /// The standard error of the estimate.
     pub standard_error: f64,
-    /// The estimate divided by its standard error.
+    /// The estimate divided by its standard error; infinite where that is 0.
     pub t: f64,
     /// The two-sided p value of t: how likely so large a t is if the true value is 0.
     pub p: f64,

@@ -12,6 +12,10 @@ static struct {
     ofc_covariance covariance;
     ofc_stream_pass pass;
     ofc_solution solution;
+    ofc_orientation orientation;
+    ofc_slants slants;
+    ofc_location location;
+    ofc_inlier_test accepted;
 } out;
 
 static uint64_t random_bits(void)
@@ -138,6 +142,50 @@ static void covariances(void **state)
     REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_solution_covariance(&hostile, &out.covariance));
 }
 
+/* Finite numbers of which what follows is not. */
+static void numbers_too_large(void **state)
+{
+    (void)state;
+    const double tilts[] = {0.5, 2.5, -2}, slants[] = {0.6, 0.7, 0.8}, cosines[] = {0.1, -0.2, 0.3};
+    const double huge[] = {DBL_MAX, DBL_MAX, DBL_MAX}, tiny[] = {5e-324, 5e-324, 5e-324}, apart[] = {DBL_MAX, -DBL_MAX, 0};
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_orientation_compose(huge, tilts, slants, 1e-3, &out.orientation));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_orientation_compose(tiny, tilts, slants, 0, &out.orientation));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, ofc_constrained_slants_least_squares(apart, cosines, &out.slants));
+
+    /* Lengths of which some, many, most and all are too large for a float. */
+    const ofc_image image = ball_image();
+    int refused = 0;
+    for (int power = 220; power < 260; power++) {
+        const double c[] = {ldexp(1, power), ldexp(1, power), ldexp(1, power), 0, 0, 0};
+        memset(&out, PATTERN, sizeof out);
+        const ofc_status status =
+            ofc_norm_location(&image, c, &stages.inliers, 2.5, workspace, sizeof workspace, &out.location, &out.accepted);
+        assert_true(status == OFC_STATUS_OK ? are_finite(&out.location, sizeof out.location) : is_untouched(&out, sizeof out));
+        refused += status == OFC_STATUS_INVALID_PARAMETER;
+    }
+    assert_true(refused > 0);
+
+    /* The albedo of colors whose squares are too large for a float was a NaN of other bits. */
+    static float colors[4][4][3], albedo[4][4], even[4][4][3];
+    for (int i = 0; i < 48; i++)
+        ((float *)colors)[i] = i % 7 ? 1e30f : 1e-30f;
+    const ofc_image bright = {
+        .pixels = colors, .width = 4, .height = 4, .row_stride_bytes = sizeof colors[0], .format = OFC_PIXEL_RGB32F};
+    const double sphere[] = {1, 1, 1, 0, 0, 0};
+    ofc_paint_params paint;
+    ofc_paint_params_default(&paint);
+    assert_int_equal(ofc_paint_albedo(&bright, &paint, sphere, workspace, sizeof workspace, albedo[0], sizeof albedo[0]),
+                     OFC_STATUS_OK);
+    for (int i = 0; i < 16; i++)
+        assert_true(isfinite(((float *)albedo)[i]) && ((float *)albedo)[i] > 0);
+    /* A quotient that is too large is none. */
+    for (int i = 0; i < 16; i++)
+        ((float *)albedo)[i] = 1e-20f;
+    assert_int_equal(ofc_paint_divide(&bright, &paint, albedo[0], sizeof albedo[0], even[0][0], sizeof even[0]), OFC_STATUS_OK);
+    for (int i = 0; i < 48; i++)
+        assert_true(isnan(((float *)even)[i]));
+}
+
 /* Anything of 32 bytes can be told from a stream, and no byte behind them is read: the address sanitizer watches. */
 static void memory_of_the_length_of_a_head(void **state)
 {
@@ -166,6 +214,7 @@ int main(void)
         cmocka_unit_test(fits_of_extreme_colors),
         cmocka_unit_test(matrices),
         cmocka_unit_test(covariances),
+        cmocka_unit_test(numbers_too_large),
         cmocka_unit_test(memory_of_the_length_of_a_head),
     };
     return cmocka_run_group_tests(tests, prepare_stages, NULL);

@@ -45,6 +45,11 @@ fn the_weight_is_what_leaves_over_what_leaves_along_the_normal() {
     let across = f64::powi((1.5 * 1.5 - 1.0) / (1.5 * 1.5 + 1.0), 2);
     let weight = Dielectric::new(1.5).expect("glass").weight(brewster.cos());
     assert!((weight - (1.0 - 0.5 * across) / 0.96).abs() < 1e-14, "{weight}");
+    // No refractive index makes more of a normal than the one toward the camera.
+    for index in [4.0, 10.0, 1e3, 1e9, 1e200] {
+        let surface = Dielectric::new(index).expect("a refractive index");
+        assert!((1..=100).all(|step| (0.0..=1.0).contains(&surface.weight(f64::from(step) / 100.0))));
+    }
     for bad in [0.999, 0.0, -1.5, f64::NAN, f64::INFINITY] {
         assert_eq!(Dielectric::new(bad), None);
     }

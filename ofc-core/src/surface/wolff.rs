@@ -53,7 +53,8 @@ impl Dielectric {
         // Fresnel's transmittances for light across and along the plane of incidence, each over 4 n cos phi cos t.
         let (across, along) = (outside + index * inside, index * outside + inside);
         let transmitted = outside * inside * (1.0 / (across * across) + 1.0 / (along * along));
-        0.5 * (1.0 + index) * (1.0 + index) * transmitted
+        // Above a refractive index of about four more light may leave aslant than straight.
+        (0.5 * (1.0 + index) * (1.0 + index) * transmitted).min(1.0)
     }
 
     /// Writes the matte weight of every inlier's normal, `f_inverse` rho of unit length, and 0 everywhere else: there is no normal

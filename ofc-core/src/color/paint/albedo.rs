@@ -124,7 +124,8 @@ fn read(
         let start = window.y * image.width() + window.x;
         for_each_bit(usable.bits(window), |i| {
             let [r, g, b] = window.pixel(i);
-            let square = quadratic_form(form, r, g, b).max(SHORTEST * SHORTEST);
+            // A square that is too large for a float is the largest one.
+            let square = quadratic_form(form, r, g, b).max(SHORTEST * SHORTEST).min(f64::from(f32::MAX));
             if let (Some(logarithm), Some(weight)) =
                 (logarithms.get_mut(start + i), weights.get_mut(start + i))
             {
@@ -176,8 +177,8 @@ fn sum(line: &[f32], radius: usize, mut put: impl FnMut(usize, f32)) {
     }
 }
 
-/// Writes the picture divided by the albedo as r, g, b: as if its paint were even. NaN where a pixel is not usable or its albedo is
-/// not above zero; returns how many pixels have a value.
+/// Writes the picture divided by the albedo as r, g, b: as if its paint were even. NaN where a pixel is not usable, its albedo is
+/// not above zero, or the quotient is too large for a float; returns how many pixels have a value.
 ///
 /// # Shape
 /// `albedo` is height rows of width `f32`, rows `albedo_stride` `f32` apart, and `pixels` height rows of width times three `f32`,
@@ -202,9 +203,11 @@ pub fn divide(
         let out = pixels.get_mut(window.y * row_stride + 3 * window.x..).unwrap_or_default();
         let places = own.iter().zip(out.as_chunks_mut::<3>().0);
         for (i, (&albedo, slot)) in places.take(window.len).enumerate() {
-            let has_value = bits >> i & 1 == 1 && albedo > 0.0 && albedo.is_finite();
+            let even = window.pixel(i).map(|value| value / albedo);
+            let is_finite = albedo.is_finite() && even.iter().all(|value| value.is_finite());
+            let has_value = bits >> i & 1 == 1 && albedo > 0.0 && is_finite;
             count += usize::from(has_value);
-            *slot = if has_value { window.pixel(i).map(|value| value / albedo) } else { [f32::NAN; 3] };
+            *slot = if has_value { even } else { [f32::NAN; 3] };
         }
     });
     Ok(count)

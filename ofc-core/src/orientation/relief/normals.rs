@@ -87,6 +87,7 @@ pub(crate) fn normals_by(
     let usable = Usable::below(reference.saturation.unwrap_or(image.sample().saturation()));
     // The noise of a pixel from that of a cell, an average of as many as it has.
     let noise = slopes.noise(reference.noise.map(|deviation| deviation * grid.side as f64));
+    let nothing = ([f64::NAN; 3], f64::NAN);
     let (mut window, mut other) = (Window::new(), Window::new());
     for y in 0..height {
         let down = place(y, grid.height * grid.side);
@@ -102,7 +103,7 @@ pub(crate) fn normals_by(
                 let (normal, deviation) = if class == PixelClass::Plane as u8 && window.masked >> i & 1 == 1 {
                     ([0.0, 0.0, 1.0], 0.0)
                 } else if !is_usable {
-                    ([f64::NAN; 3], f64::NAN)
+                    nothing
                 } else {
                     let at = [place(x + i, grid.width * grid.side), down];
                     let plane = match background {
@@ -116,7 +117,9 @@ pub(crate) fn normals_by(
                     let (normal, _) = unit(slopes.slopes(at, delta));
                     let [n1, n2, n3] = normal;
                     let model = slopes.model_deviation(sqrt(n1 * n1 + n2 * n2));
-                    (normal, sqrt(model * model + noise / (n3 * n3)))
+                    let deviation = sqrt(model * model + noise / (n3 * n3)).min(f64::from(f32::MAX));
+                    // A relief that nobody found may hold numbers from which no normal follows.
+                    if normal.iter().all(|n| n.is_finite()) { (normal, deviation) } else { nothing }
                 };
                 write(x + i, y, normal.map(|n| n as f32), deviation as f32);
             }

@@ -62,9 +62,9 @@ impl Finding {
     /// Nothing to say.
     pub(crate) const NONE: Self = Self::of(Reason::None, 0.0, 0.0);
 
-    /// A reason with these numbers.
+    /// A reason with these numbers. A ratio to nothing is the largest number.
     pub(super) const fn of(reason: Reason, value: f64, limit: f64) -> Self {
-        Self { reason, channel: None, value, limit }
+        Self { reason, channel: None, value: value.min(f64::MAX), limit }
     }
 
     /// This reason where the value is above its limit.
