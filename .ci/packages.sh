@@ -7,7 +7,7 @@ example_packages=(cmake g++ gcc gnuplot-nox libcli11-dev libopencv-core-dev libo
     nlohmann-json3-dev)
 # What the tests need beyond those.
 # shellcheck disable=SC2034
-test_packages=(assimp-utils binutils clang doxygen libcmocka-dev lintian pkg-config python3 python3-venv shellcheck)
+test_packages=(assimp-utils binutils clang doxygen libcmocka-dev libclang-rt-dev lintian pkg-config python3 python3-venv shellcheck valgrind)
 
 # install_packages NAME...: as root, or with sudo.
 install_packages() {

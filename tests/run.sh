@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # All tests, and how long each kind of them took. run.sh --fast leaves out Python, the documentation, the emulated
-# boards, the other targets, the examples and the newcomers. Installs the Debian packages it lacks (.ci/packages.sh names them) as root or with sudo. Can be run again.
+# boards, the other targets, the fuzzing, the examples and the newcomers. Installs the Debian packages it lacks (.ci/packages.sh names them) as root or with sudo. Can be run again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case ${1-} in
@@ -25,7 +25,7 @@ step() {
 }
 
 step "scripts"
-shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/determinism/*.sh tests/newcomer/run.sh ofc-ffi/package/*.sh bindings/*/*.sh docs/*.sh
+shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/determinism/*.sh tests/fuzz/run.sh tests/newcomer/run.sh ofc-ffi/package/*.sh bindings/*/*.sh docs/*.sh
 
 step "format and lints"
 cargo fmt --all --check
@@ -46,7 +46,7 @@ ctest --test-dir target/ctest --output-on-failure
 
 if [ -n "$fast" ]; then
     step
-    echo "the fast tests passed in $SECONDS s; Python, documentation, firmware, other targets, examples and newcomers were left out"
+    echo "the fast tests passed in $SECONDS s; Python, documentation, firmware, other targets, fuzzing, examples and newcomers were left out"
     exit
 fi
 
@@ -61,6 +61,9 @@ step "firmware"
 
 step "the same bits on every target"
 ./tests/determinism/run.sh
+
+step "fuzzing"
+./tests/fuzz/run.sh
 
 step "examples"
 ./tests/examples.sh

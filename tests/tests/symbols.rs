@@ -1,4 +1,4 @@
-//! What the shared library exports and needs, and that the contract tests call all of it.
+//! What the shared library exports and needs, and that the contract tests and the fuzz targets call all of it.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -47,9 +47,12 @@ fn listing() -> String {
     shipped::stdout("nm", &["-D", &folder().join("libofc.so").to_string_lossy()])
 }
 
-fn contract_tests() -> String {
-    let files = std::fs::read_dir(root().join("tests/c")).expect("tests/c");
-    files.map(|file| std::fs::read_to_string(file.expect("an entry").path()).expect("a source")).collect()
+/// The C sources of a folder of the tests.
+fn sources(folder: &str) -> String {
+    let files = std::fs::read_dir(root().join("tests").join(folder)).expect("a folder");
+    let paths = files.map(|file| file.expect("an entry").path());
+    let sources = paths.filter(|path| path.extension().is_some_and(|extension| extension == "c"));
+    sources.map(|path| std::fs::read_to_string(path).expect("a source")).collect()
 }
 
 #[test]
@@ -192,8 +195,10 @@ fn a_program_takes_from_the_archive_only_what_it_calls() {
 }
 
 #[test]
-fn every_export_has_a_contract_test() {
-    assert_eq!(never_called(&listing(), &contract_tests()), [""; 0]);
+fn every_export_has_a_contract_test_and_is_fuzzed() {
+    for folder in ["c", "fuzz"] {
+        assert_eq!(never_called(&listing(), &sources(folder)), [""; 0], "tests/{folder}");
+    }
 }
 
 #[test]
