@@ -46,7 +46,9 @@ const WEIGHT_OF_RIM: f32 = 0.05;
 const ONE_DEGREE: f32 = 0.017_453_3;
 
 /// How exactly surfaces on the way are integrated.
-const TOLERANCE: f64 = 1e-3;
+const TOLERANCE: f64 = 5e-3;
+/// The first one, which is but a guess.
+const FIRST_TOLERANCE: f64 = 1e-1;
 /// And the last one.
 const FINAL_TOLERANCE: f64 = 1e-4;
 
@@ -60,7 +62,7 @@ pub(super) fn weight(angle: f32, [.., n3]: Vector) -> f32 {
 /// Leaves the chosen normals in the state, the surface that they make, and in its ratios how clear each choice between images was.
 pub(super) fn choose(state: &mut State, known: &Known, rim: Option<f32>) -> Result<DepthResult, DepthError> {
     begin(state, known, rim);
-    let mut result = state.integrate(Method::Coupled, TOLERANCE)?;
+    let mut result = state.integrate(Method::Coupled, FIRST_TOLERANCE)?;
     for round in 0..ROUNDS {
         let loudness = if round < CAREFUL_ROUNDS { 0.5 } else { 1.0 };
         let is_last = round + 1 == ROUNDS;
