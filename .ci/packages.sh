@@ -3,8 +3,8 @@
 
 # Packages that building the examples needs.
 # shellcheck disable=SC2034
-example_packages=(cmake g++ gcc gnuplot-nox libcli11-dev libopencv-core-dev libopencv-imgcodecs-dev libopencv-imgproc-dev make
-    nlohmann-json3-dev)
+example_packages=(cmake g++ gcc gnuplot-nox libcli11-dev libopencv-core-dev libopencv-imgcodecs-dev libopencv-imgproc-dev
+    libopencv-videoio-dev make nlohmann-json3-dev)
 # What the tests need beyond those.
 # shellcheck disable=SC2034
 test_packages=(assimp-utils binutils clang doxygen libcmocka-dev libclang-rt-dev lintian pkg-config python3 python3-venv shellcheck valgrind)

@@ -337,6 +337,9 @@ const char *ofc_status_message(ofc_status status);
 #define OFC_STATUS_TOO_MANY_ROWS (-53)  ///< The frame has all its rows already.
 #define OFC_STATUS_TOO_FEW_ROWS (-54)   ///< The frame ended before its last row; its pass must be repeated.
 #define OFC_STATUS_ROW_MISMATCH (-55)   ///< The picture is not one row of the stream's width and sample type.
+#define OFC_STATUS_NOT_A_MODEL (-60)    ///< The bytes are not those of a saved model, or their byte order was changed.
+#define OFC_STATUS_MODEL_VERSION (-61)  ///< The model is of a version that is not known.
+#define OFC_STATUS_MODEL_DAMAGED (-62)  ///< The bytes of the model are too few, too many or changed.
 
 /// What a refusal or a doubt comes from: one of OFC_REASON_*, whose numbers are never reused.
 ///
@@ -2260,6 +2263,59 @@ ofc_status ofc_rig_classify(const ofc_rig_model *model, const ofc_image *image, 
 ofc_status ofc_rig_normals(const ofc_rig_model *model, const ofc_image *image, const ofc_image *background,
                            const ofc_relief_class *classes, float *normals, size_t normals_stride_bytes,
                            float *uncertainty, size_t uncertainty_stride_bytes);
+
+/// Writes a model as bytes that are the same on every target: magic number, byte order, version, size, numbers, checksum.
+/// @param model  The solved rig.
+/// @param bytes  Output: OFC_RIG_MODEL_BYTES bytes.
+/// @param size  How long `bytes` is.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_WORKSPACE_TOO_SMALL where `bytes` is too short; an argument status.
+ofc_status ofc_rig_model_save(const ofc_rig_model *model, uint8_t *bytes, size_t size);
+
+/// Reads a model that ofc_rig_model_save() wrote, on this target or another one. Whatever the bytes are, they are a model or refused.
+/// @param bytes  The bytes.
+/// @param size  How many they are.
+/// @param model  Output: the model.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_A_MODEL for other bytes; OFC_STATUS_MODEL_VERSION; OFC_STATUS_MODEL_DAMAGED for a wrong size or checksum;
+///     an argument status, OFC_STATUS_INVALID_PARAMETER for numbers that no model has.
+ofc_status ofc_rig_model_load(const uint8_t *bytes, size_t size, ofc_rig_model *model);
+
+/// What is pressed in. Places are in pixels from the middle of the top left one, y downward; lengths are in the unit of the pixel size.
+typedef struct ofc_rig_contact {
+    double area;           ///< Its area.
+    double center[2];      ///< The mean place of its pixels: x, y.
+    double peak;           ///< How high its highest point is above the plane; negative for a hollow.
+    double volume;         ///< The volume above the plane.
+    int32_t peak_place[2]; ///< Where the highest point is: x, y.
+    int32_t bounds[4];     ///< Its first and last column and row: left, top, right, bottom.
+} ofc_rig_contact;
+
+/// Measures what is pressed in: the pixels of the contact that are at least 0.16 of the highest point away from the plane, which lies where the
+/// untouched pixels are in the mean.
+/// @param classes  width x height bytes from ofc_rig_classify().
+/// @param width,height  Size of the frame.
+/// @param depth  height rows of width floats from ofc_depth_integrate(), in pixels; NaN where there is none.
+/// @param depth_stride_bytes  Bytes from one row to the next, a multiple of 4.
+/// @param pixel_size  The length of a pixel on the gel, positive: in millimeters, the contact is in millimeters, too.
+/// @param mask  Output: width x height bytes, rows without gaps: 255 in the contact, 0 elsewhere. NULL where it is not wanted.
+/// @param contact  Output: the contact.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_RELIEF, with nothing written, where there is no contact or no plane; an argument status.
+ofc_status ofc_rig_contact_measure(const ofc_relief_class *classes, int32_t width, int32_t height, const float *depth,
+                                   size_t depth_stride_bytes, double pixel_size, uint8_t *mask,
+                                   ofc_rig_contact *contact);
+
+/// Moves a background toward a frame where the frame shows the untouched plane: a slow drift of the light and of the gel is followed, and the frames of
+/// a rig make their background themselves. A pixel that is NaN in the background takes the frame's color: begin with NaNs.
+/// @param image  The frame.
+/// @param classes  width x height bytes from ofc_rig_add() or ofc_rig_classify(): pixels of OFC_RELIEF_PLANE count; NULL where nothing is pressed in.
+/// @param saturation  As in ofc_relief_params.
+/// @param rate  The share by which the background moves, in (0, 1]: 0.01 to 0.05 follow a drift over minutes.
+/// @param background  In and out: height rows of width (r, g, b) floats. OFC_PIXEL_RGB32F describes it as a picture.
+/// @param background_stride_bytes  Bytes from one row to the next, a multiple of 4.
+/// @return OFC_STATUS_OK; an argument status.
+ofc_status ofc_rig_background_follow(const ofc_image *image, const ofc_relief_class *classes, double saturation,
+                                     double rate, float *background, size_t background_stride_bytes);
+
+#define OFC_RIG_MODEL_BYTES 1368 ///< The bytes of a saved model.
 
 /* ---- Segmentation, of pictures with several materials or light environments ------------------------------------- */
 

@@ -203,6 +203,44 @@ says "nothing differs"
 [ ! -e "$out/relief/classes.png" ] || fail "classes of a picture without a relief"
 expect 2 "$photo" "$out/gel.png" --ball-radius -1
 
+# A tactile sensor, live: a folder of frames calibrates itself and becomes a video, and that is measured with the model that was kept.
+live=target/c_examples/ofc_live
+mkdir "$out/frames"
+number=0
+for press in "0 0 0" "12 120 80" "10 90 60" "0 0 0" "12 150 110" "12 160 60"; do
+    # shellcheck disable=SC2086
+    python3 tests/gel_png.py "$out/frames/$number.png" $press >/dev/null
+    number=$((number + 1))
+done
+# contacts CSV: centers and heights of what is pressed in; heights are those of gel_png.py.
+contacts() {
+    python3 -c '
+import csv, sys
+wanted = [None, (120, 80, 13.89), (90, 60, 11.80), None, (150, 110, 13.89), (160, 60, 13.89)]
+rows = list(csv.DictReader(open(sys.argv[1])))
+assert len(rows) == len(wanted), rows
+for row, press in zip(rows, wanted):
+    assert (row["touched"] == "1") == (press is not None), row
+    if press:
+        found = [float(row[name]) for name in ("x_px", "y_px", "peak")]
+        assert all(abs(a - b) < 0.5 for a, b in zip(found, press)), (found, press)' "$1" || fail "$1: other contacts"
+}
+expect 0 "$live" "$out/frames" --ball-radius 40 --save-model "$out/sensor.ofc" --record "$out/frames.avi" --out "$out/live"
+contacts "$out/live/contacts.csv" # off by at most 0.04 pixels, and 0.06 in height
+json "$out/live/report.json" "r['frames'] == 6 and r['touched'] == 4 and r['model']['balls'] >= 1 and abs(r['drift']) < 0.01"
+[ -s "$out/live/live.avi" ] || fail "no live.avi"
+expect 0 "$live" "$out/frames.avi" --model "$out/sensor.ofc" --out "$out/again"
+contacts "$out/again/contacts.csv" # off by 0.2 pixels, and 0.1 in height: motion JPEG
+json "$out/again/report.json" "r['learned'] == 0 and r['model']['terms'] == 18"
+head -c 1000 "$out/sensor.ofc" >"$out/damaged.ofc"
+expect 2 "$live" "$out/frames" --model "$out/damaged.ofc" --out "$out/again"
+says "damaged"
+expect 2 "$live" "$out/none.avi" --out "$out/again"
+says "no camera, video or folder"
+mkdir "$out/untouched"
+cp "$out/bare.png" "$out/untouched"
+expect 1 "$live" "$out/untouched" --out "$out/again"
+
 # Table 2, section 5's checks and their figures, by the direct method whatever the rest of the program does.
 expect 0 "$photo" --report paper --out "$out/paper"
 for line in "direct method" "shadows kept (auto)" "Lee-Rosenfeld" "24.64     35.10     15.98" "correlation of input" "shaded depth" \

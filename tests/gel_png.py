@@ -1,4 +1,5 @@
-"""gel_png.py FILE.png HEIGHT: a ball of radius 40 pixels pressed HEIGHT pixels out of a gel, under lights that fall off; flat with HEIGHT 0."""
+"""gel_png.py FILE.png HEIGHT [X Y]: a ball of radius 40 pixels pressed HEIGHT pixels out of a gel, under lights that fall off; flat with HEIGHT 0.
+X Y is its center in pixels."""
 
 import math
 import random
@@ -9,6 +10,7 @@ import zlib
 WIDTH, DEPTH, RADIUS, SKIRT = 240, 180, 40.0, 12.0
 LIGHTS = ((110, 20, 140), (-80, 100, 130), (-40, -110, 120))
 HEIGHT = float(sys.argv[2])
+X, Y = map(float, sys.argv[3:5]) if len(sys.argv) > 3 else (130.5, 80.5)
 
 # The gel comes up in a parabola over the skirt, from zero to the slope of the ball at its contact.
 edge = math.sqrt(max(0.0, RADIUS**2 - (RADIUS - HEIGHT * 0.75) ** 2))
@@ -22,7 +24,7 @@ def slope(d):
 
 
 def color(x, y):
-    u, v = x - 130.5, 80.5 - y
+    u, v = x - X, Y - y
     d = math.hypot(u, v)
     p, q = (-slope(d) * u / d, -slope(d) * v / d) if d > 0 else (0.0, 0.0)
     length = math.sqrt(1 + p * p + q * q)

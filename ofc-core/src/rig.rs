@@ -9,16 +9,25 @@
 //!    a regression: of delta alone, of delta times a polynomial of order 2 of the place, or of the products of delta as well.
 //! 3. [`solve()`] makes a [`Model`] of both. Sums of rigs of one sensor add: [`Rig::merge`], [`BallsMut::merge`].
 //!
+//! A model turns frames into [classes](classify) and [normals](normals()); [`follow`] keeps the background as it drifts, [`contact()`] measures what
+//! is pressed in, and [`save`] and [`load`] keep a model.
+//!
 //! The scale of W comes from balls, from what the caller knows, or from the bend of the colors; otherwise it is unknown, and said to be.
 
+mod background;
 mod ball;
+mod contact;
+mod file;
 mod frame;
 mod model;
 mod solve;
 mod sums;
 mod terms;
 
+pub use background::follow;
 pub use ball::{Ball, Balls, BallsMut, PACKED, SIDES};
+pub use contact::{Contact, contact};
+pub use file::{FILE_BYTES, FileError, load, save};
 pub use frame::{Frame, add};
 pub use model::{Advice, Model, classify, normals};
 pub use solve::solve;

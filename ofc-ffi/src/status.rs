@@ -101,6 +101,13 @@ pub const OFC_STATUS_TOO_FEW_ROWS: i32 = -54;
 /// The picture is not one row of the stream's width and sample type.
 pub const OFC_STATUS_ROW_MISMATCH: i32 = -55;
 
+/// The bytes are not those of a saved model, or their byte order was changed.
+pub const OFC_STATUS_NOT_A_MODEL: i32 = -60;
+/// The model is of a version that is not known.
+pub const OFC_STATUS_MODEL_VERSION: i32 = -61;
+/// The bytes of the model are too few, too many or changed.
+pub const OFC_STATUS_MODEL_DAMAGED: i32 = -62;
+
 fn message(status: ofc_status) -> &'static CStr {
     match status {
         OFC_STATUS_OK => c"success",
@@ -136,6 +143,9 @@ fn message(status: ofc_status) -> &'static CStr {
         OFC_STATUS_TOO_MANY_ROWS => c"the frame has all its rows",
         OFC_STATUS_TOO_FEW_ROWS => c"the frame ended before its last row",
         OFC_STATUS_ROW_MISMATCH => c"not one row of the stream's width and sample type",
+        OFC_STATUS_NOT_A_MODEL => c"not a saved model, or with another byte order",
+        OFC_STATUS_MODEL_VERSION => c"a model of an unknown version",
+        OFC_STATUS_MODEL_DAMAGED => c"a damaged model: its size or its checksum is wrong",
         _ => c"unknown status",
     }
 }

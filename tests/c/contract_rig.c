@@ -15,6 +15,8 @@ static struct {
     uint8_t classes[DOWN][ACROSS];
     float normals[DOWN][ACROSS + 1][3];
     float uncertainty[DOWN][ACROSS];
+    uint8_t saved[OFC_RIG_MODEL_BYTES + 1];
+    ofc_rig_contact contact;
 } out;
 
 static ofc_relief_params params;
@@ -306,11 +308,146 @@ static void bad_models(void **state)
     assert_int_equal(NORMALS(&some_model, classes[0], normals, stride, NULL, 0), OFC_STATUS_OK);
 }
 
+static void models_are_kept(void **state)
+{
+    (void)state;
+    const size_t all = OFC_RIG_MODEL_BYTES;
+    memset(&out, PATTERN, sizeof out);
+    assert_int_equal(ofc_rig_model_save(&some_model, out.saved, sizeof out.saved), OFC_STATUS_OK);
+    assert_true(is_untouched(out.saved + all, 1));
+    assert_int_equal(ofc_rig_model_load(out.saved, all, &out.model), OFC_STATUS_OK);
+    assert_memory_equal(&out.model, &some_model, sizeof some_model);
+    static uint8_t bytes[OFC_RIG_MODEL_BYTES + 1];
+    memcpy(bytes, out.saved, sizeof bytes);
+    REFUSED(OFC_STATUS_NOT_SOLVED, out, ofc_rig_model_save(&(ofc_rig_model){.terms = 0}, out.saved, all));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_model_save(NULL, out.saved, all));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_model_save(&some_model, NULL, all));
+    REFUSED(OFC_STATUS_WORKSPACE_TOO_SMALL, out, ofc_rig_model_save(&some_model, out.saved, all - 1));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_model_load(NULL, all, &out.model));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, ofc_rig_model_load(bytes, all, NULL));
+    REFUSED(OFC_STATUS_EMPTY, out, ofc_rig_model_load(bytes, 0, &out.model));
+    REFUSED(OFC_STATUS_OVERLAP, out, ofc_rig_model_load((const uint8_t *)&out.model, all, &out.model));
+    REFUSED(OFC_STATUS_MODEL_DAMAGED, out, ofc_rig_model_load(bytes, all + 1, &out.model));
+    for (size_t size = 1; size < all; size++)
+        REFUSED(size < 12   ? OFC_STATUS_NOT_A_MODEL
+                : size < 16 ? OFC_STATUS_MODEL_VERSION
+                            : OFC_STATUS_MODEL_DAMAGED,
+                out.model, ofc_rig_model_load(bytes, size, &out.model));
+    /* Every changed byte is seen. */
+    for (size_t i = 0; i < all; i++) {
+        bytes[i] ^= (uint8_t)(1 + i % 255);
+        REFUSED(i < 12   ? OFC_STATUS_NOT_A_MODEL
+                : i < 16 ? OFC_STATUS_MODEL_VERSION
+                         : OFC_STATUS_MODEL_DAMAGED,
+                out.model, ofc_rig_model_load(bytes, all, &out.model));
+        bytes[i] ^= (uint8_t)(1 + i % 255);
+    }
+    /* Numbers that no model has, with the right checksum: the bytes after the header at random. */
+    uint32_t random = 7;
+    int refused = 0;
+    for (int round = 0; round < 2000; round++) {
+        const int changes = 1 + round % 40;
+        static uint8_t hostile[OFC_RIG_MODEL_BYTES];
+        memcpy(hostile, bytes, sizeof hostile);
+        for (int i = 0; i < changes; i++) {
+            random = random * 1664525U + 1013904223U;
+            hostile[24 + random % (all - 32)] = (uint8_t)(random >> 24);
+        }
+        uint64_t hash = 0xcbf29ce484222325U;
+        for (size_t i = 0; i < all - 8; i++)
+            hash = (hash ^ hostile[i]) * 0x100000001b3U;
+        for (size_t i = 0; i < 8; i++)
+            hostile[all - 8 + i] = (uint8_t)(hash >> (8 * i));
+        const ofc_status status = ofc_rig_model_load(hostile, all, &out.model);
+        assert_true(status == OFC_STATUS_OK || status == OFC_STATUS_INVALID_PARAMETER || status == OFC_STATUS_TOO_LARGE);
+        refused += status != OFC_STATUS_OK;
+        if (status == OFC_STATUS_OK && round % 100 == 0 && out.model.width == ACROSS && out.model.height == DOWN) {
+            const ofc_image image = image_of(frame);
+            (void)ofc_rig_classify(&out.model, &image, NULL, room, sizeof room, out.classes[0]);
+        }
+    }
+    assert_true(refused > 20 && refused < 1990);
+}
+
+static void a_contact_is_measured(void **state)
+{
+    (void)state;
+    static float depth[DOWN][ACROSS];
+    static uint8_t classes[DOWN][ACROSS], mask[DOWN][ACROSS];
+    for (int y = 0; y < DOWN; y++)
+        for (int x = 0; x < ACROSS; x++) {
+            const double u = x - 70, v = y - 50, rise = 10 - (u * u + v * v) / 40;
+            depth[y][x] = (float)(3 + fmax(0, rise));
+            classes[y][x] = rise > 0 ? OFC_RELIEF_CONTACT : OFC_RELIEF_PLANE;
+        }
+    const size_t stride = sizeof depth[0];
+    memset(&out, PATTERN, sizeof out);
+#define MEASURE(classes, depth, stride, size, mask, contact)                                                               ofc_rig_contact_measure(classes, ACROSS, DOWN, depth, stride, size, mask, contact)
+    assert_int_equal(MEASURE(classes[0], depth[0], stride, 0.5, mask[0], &out.contact), OFC_STATUS_OK);
+    const double radius_square = 40 * 10 * 0.84, pi = 3.14159265358979;
+    assert_true(fabs(out.contact.area - pi * radius_square * 0.25) < 2);
+    assert_true(fabs(out.contact.center[0] - 70) < 1e-9 && fabs(out.contact.center[1] - 50) < 1e-9);
+    assert_true(fabs(out.contact.peak - 5) < 1e-9);
+    assert_true(out.contact.peak_place[0] == 70 && out.contact.peak_place[1] == 50);
+    assert_true(out.contact.bounds[0] == 52 && out.contact.bounds[2] == 88);
+    assert_true(mask[50][70] == 255 && mask[50][51] == 0 && mask[0][0] == 0);
+    REFUSED(OFC_STATUS_NULL_POINTER, out, MEASURE(NULL, depth[0], stride, 1, NULL, &out.contact));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, MEASURE(classes[0], NULL, stride, 1, NULL, &out.contact));
+    REFUSED(OFC_STATUS_NULL_POINTER, out, MEASURE(classes[0], depth[0], stride, 1, NULL, NULL));
+    REFUSED(OFC_STATUS_STRIDE_TOO_SMALL, out, MEASURE(classes[0], depth[0], stride - 4, 1, NULL, &out.contact));
+    REFUSED(OFC_STATUS_MISALIGNED, out, MEASURE(classes[0], depth[0], stride + 1, 1, NULL, &out.contact));
+    REFUSED(OFC_STATUS_OVERLAP, out, MEASURE(classes[0], depth[0], stride, 1, classes[0], &out.contact));
+    const double sizes[] = {0, -1, (double)NAN, (double)INFINITY};
+    for (int i = 0; i < 4; i++)
+        REFUSED(OFC_STATUS_INVALID_PARAMETER, out, MEASURE(classes[0], depth[0], stride, sizes[i], NULL, &out.contact));
+    REFUSED(OFC_STATUS_EMPTY, out,
+            ofc_rig_contact_measure(classes[0], 0, DOWN, depth[0], stride, 1, NULL, &out.contact));
+    REFUSED(OFC_STATUS_TOO_LARGE, out,
+            ofc_rig_contact_measure(classes[0], INT32_MAX, INT32_MAX, depth[0], stride, 1, NULL, &out.contact));
+    memset(classes, OFC_RELIEF_PLANE, sizeof classes);
+    REFUSED(OFC_STATUS_NO_RELIEF, out, MEASURE(classes[0], depth[0], stride, 1, NULL, &out.contact));
+}
+
+static ofc_status followed(const ofc_image *image)
+{
+    return ofc_rig_background_follow(image, NULL, 0, 0.5, out.normals[0][0], sizeof out.normals[0]);
+}
+
+static void a_background_is_followed(void **state)
+{
+    (void)state;
+    static float background[DOWN][ACROSS][3];
+    static uint8_t classes[DOWN][ACROSS];
+    const size_t stride = sizeof background[0];
+    for (int i = 0; i < 3 * ALL; i++)
+        background[0][0][i] = NAN;
+    const ofc_image image = image_of(frame), below = image_of(plane);
+#define FOLLOW(image, classes, level, rate, background, stride)                                                            ofc_rig_background_follow(image, classes, level, rate, background, stride)
+    assert_int_equal(FOLLOW(&below, NULL, 0, 0.25, background[0][0], stride), OFC_STATUS_OK);
+    assert_true(background[60][78][1] == (float)plane[60][78][1]);
+    memset(classes, OFC_RELIEF_PLANE, sizeof classes);
+    classes[60][78] = OFC_RELIEF_CONTACT;
+    assert_int_equal(FOLLOW(&image, classes[0], 0, 0.25, background[0][0], stride), OFC_STATUS_OK);
+    assert_true(background[60][78][1] == (float)plane[60][78][1]);
+    assert_true(fabs(background[60][90][0] - (0.75 * plane[60][90][0] + 0.25 * frame[60][90][0])) < 1e-4);
+    refuses_bad_images(followed, &out, sizeof out);
+    float *target = out.normals[0][0];
+    REFUSED(OFC_STATUS_NULL_POINTER, out, FOLLOW(&image, classes[0], 0, 0.25, NULL, stride));
+    REFUSED(OFC_STATUS_STRIDE_TOO_SMALL, out, FOLLOW(&image, classes[0], 0, 0.25, target, 12));
+    REFUSED(OFC_STATUS_MISALIGNED, out, FOLLOW(&image, classes[0], 0, 0.25, target, stride + 2));
+    REFUSED(OFC_STATUS_INVALID_PARAMETER, out, FOLLOW(&image, classes[0], -1, 0.25, target, stride));
+    const double rates[] = {0, -0.5, 1.5, (double)NAN};
+    for (int i = 0; i < 4; i++)
+        REFUSED(OFC_STATUS_INVALID_PARAMETER, out, FOLLOW(&image, classes[0], 0, rates[i], target, stride));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(presses_are_learned), cmocka_unit_test(what_adds_nothing_has_a_reason),
         cmocka_unit_test(bad_arguments),       cmocka_unit_test(bad_models),
+        cmocka_unit_test(models_are_kept),     cmocka_unit_test(a_contact_is_measured),
+        cmocka_unit_test(a_background_is_followed),
     };
     return cmocka_run_group_tests(tests, prepare, NULL);
 }

@@ -72,6 +72,18 @@ static void mix_rig(const ofc_image *image, const ofc_image *background, const o
                                sizeof uncertainty[0]));
     mix_floats(found[0][0], 3 * ALL);
     mix_floats(uncertainty[0], ALL);
+    static uint8_t saved[OFC_RIG_MODEL_BYTES];
+    mix_status(ofc_rig_model_save(&model, saved, sizeof saved));
+    mix_bytes(saved, sizeof saved);
+    mix_status(ofc_rig_model_load(saved, sizeof saved, &model));
+    mix_model(&model);
+    /* Any map will do for a depth. */
+    ofc_rig_contact contact = {.area = 0};
+    mix_status(ofc_rig_contact_measure(classes[0], ACROSS, DOWN, uncertainty[0], sizeof uncertainty[0], 0.0625, NULL,
+                                       &contact));
+    mix_doubles(&contact.area, 5);
+    mix_status(ofc_rig_background_follow(image, classes[0], 0, 0.25, found[0][0], sizeof found[0]));
+    mix_floats(found[0][0], 3 * ALL);
 }
 
 void mix_relief(void)

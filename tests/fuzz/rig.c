@@ -65,6 +65,51 @@ static void use(const ofc_rig_model *model)
         }
 }
 
+/* A model as bytes, changed and read again. */
+static void keep(const ofc_rig_model *model)
+{
+    uint8_t *const bytes = take(OFC_RIG_MODEL_BYTES, 1);
+    const size_t size = OFC_RIG_MODEL_BYTES - (size_t)one_in(16);
+    if (CALL(ofc_rig_model_save(BAD(model, NULL), bad_sometimes(bytes, 1, NULL), size), bytes) != OFC_STATUS_OK)
+        return;
+    const int changed = one_in(2);
+    if (changed)
+        change(bytes, OFC_RIG_MODEL_BYTES, 1 + below(4));
+    ofc_rig_model *const read = TAKE(ofc_rig_model, 1);
+    const ofc_status status = CALL(ofc_rig_model_load(bad_sometimes(bytes, 1, NULL), size, BAD(read, bytes)), read);
+    if (status == OFC_STATUS_OK)
+        check_model(read);
+    if (status == OFC_STATUS_OK && !changed && memcmp(read->slopes, model->slopes, sizeof read->slopes) != 0)
+        fail("a model is another one after it was kept");
+}
+
+/* What is pressed in, of any depths, and a background of any numbers. */
+static void measure(void)
+{
+    const size_t pixels = (size_t)width * (size_t)height;
+    uint8_t *const classes = take(pixels, 1), *const mask = take(pixels, 1);
+    for (size_t i = 0; i < pixels; i++)
+        classes[i] = i % 7 < 3 ? OFC_RELIEF_CONTACT : OFC_RELIEF_PLANE;
+    change_some(classes, pixels);
+    size_t stride, wide;
+    float *const depth = map_of(1, &stride), *const background = map_of(3, &wide);
+    for (int32_t y = 0; y < height; y++)
+        for (int32_t x = 0; x < width; x++)
+            ((float *)((char *)depth + (size_t)y * stride))[x] = one_in(64) ? any_float() : (float)(x % 5);
+    ofc_rig_contact *const contact = TAKE(ofc_rig_contact, 1);
+    if (CALL(ofc_rig_contact_measure(classes, width, height, BAD(depth, NULL), stride, some_double(0.01, 10),
+                                     below(2) ? NULL : mask, BAD(contact, classes)),
+             contact, mask) == OFC_STATUS_OK)
+        all_finite("contact", DOUBLES(contact, area, peak_place));
+    const struct picture frame = picture_sized(width, height);
+    for (int32_t y = 0; y < height; y++)
+        for (int32_t x = 0; x < 3 * width; x++)
+            ((float *)((char *)background + (size_t)y * wide))[x] = one_in(64) ? any_float() : 100;
+    CALL(ofc_rig_background_follow(IMAGE, below(2) ? NULL : classes, some_double(0, 250), some_double(0.01, 1), BAD(background, NULL),
+                                   wide),
+         background);
+}
+
 void target(void)
 {
     width = 32 + below(24);
@@ -113,4 +158,6 @@ void target(void)
     if (CALL(ofc_rig_set_scale(BAD(rig, model), BAD(model, NULL), some_double(0.1, 3), some_double(0, 1)), rig) == OFC_STATUS_OK)
         all_finite("scale", &rig->scale, 2);
     use(model);
+    keep(model);
+    measure();
 }

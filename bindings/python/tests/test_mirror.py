@@ -20,6 +20,7 @@ SOURCES = "".join(path.read_text(encoding="utf-8") for path in Path(ofc.__file__
 
 # Not wrapped, and why.
 A_STAGE = "a stage of ofc_solve(), whose Solution has what it finds"
+A_RIG = "of rigs, the models in files, contacts and backgrounds are not wrapped yet"
 LEFT_OUT = {
     "ofc_version": "ofc_version_string() is __version__",
     "ofc_segment_mark": "labels == label is the same mask",
@@ -55,6 +56,10 @@ LEFT_OUT = {
     "ofc_orthogonal_annealing": A_STAGE,
     "ofc_constrained_slants_integrable_workspace_size": A_STAGE,
     "ofc_constrained_slants_integrable": A_STAGE,
+    "ofc_rig_model_save": A_RIG,
+    "ofc_rig_model_load": A_RIG,
+    "ofc_rig_contact_measure": A_RIG,
+    "ofc_rig_background_follow": A_RIG,
 }
 
 

@@ -54,4 +54,4 @@ pub(crate) use normals::{Reference, Slopes, normals_by};
 pub(crate) use outward::arms;
 pub(crate) use result::deviation_by;
 pub(crate) use scale::Inner;
-pub(crate) use survey::{KnownPlane, Memory, Survey, survey};
+pub(crate) use survey::{Memory, Survey, survey};

@@ -5,8 +5,7 @@ use crate::math::arena::Arena;
 use crate::math::cholesky::dot;
 use crate::math::mat3;
 use crate::orientation::relief::{
-    Grid, KnownPlane, Polynomial, Reference, ReliefError, ScaleSource, Slopes, deviation_by, normals_by,
-    survey,
+    Grid, Polynomial, Reference, ReliefError, ScaleSource, Slopes, deviation_by, normals_by, survey,
 };
 use crate::picture::Image;
 
@@ -136,8 +135,7 @@ pub fn classify(
     if [width, height] != [model.width, model.height] || classes.len() != width * height {
         return Err(ReliefError::Size);
     }
-    let known = KnownPlane { plane: &model.plane, noise: model.noise };
-    survey(image, background, model.saturation, Some(known), workspace)?.write(width, classes);
+    survey(image, background, model.saturation, Some(&model.plane), workspace)?.write(width, classes);
     Ok(())
 }
 

@@ -43,6 +43,9 @@ class Status(enum.IntEnum):
     TOO_MANY_ROWS = -53
     TOO_FEW_ROWS = -54
     ROW_MISMATCH = -55
+    NOT_A_MODEL = -60
+    MODEL_VERSION = -61
+    MODEL_DAMAGED = -62
 
     @property
     def message(self) -> str:

@@ -48,15 +48,6 @@ impl<'w> Memory<'w> {
     }
 }
 
-/// What is known of a plane before a picture of it is looked at.
-#[derive(Clone, Copy)]
-pub(crate) struct KnownPlane<'a> {
-    /// Its color.
-    pub plane: &'a Polynomial,
-    /// The deviation of each channel of a cell, relative to its color.
-    pub noise: [f64; 3],
-}
-
 /// A picture as cells.
 pub(crate) struct Survey<'w> {
     pub grid: Grid,
@@ -69,7 +60,7 @@ pub(crate) struct Survey<'w> {
     pub memory: Memory<'w>,
 }
 
-/// Looks at a picture, and at one of the plane alone if there is one. What is known of the plane is not estimated again.
+/// Looks at a picture, and at one of the plane alone if there is one. A plane that is known is not estimated again.
 ///
 /// # Errors
 /// See [`ReliefError`].
@@ -77,7 +68,7 @@ pub(crate) fn survey<'w>(
     image: &Image,
     background: Option<&Image>,
     saturation: Option<f32>,
-    known: Option<KnownPlane>,
+    known: Option<&Polynomial>,
     mut workspace: Arena<'w>,
 ) -> Result<Survey<'w>, ReliefError> {
     let (width, height) = (image.width(), image.height());
@@ -93,11 +84,8 @@ pub(crate) fn survey<'w>(
     let plane = pictures.average(known, &mut memory).ok_or(ReliefError::TooFewPixels)?;
     pictures.compare(&plane, &mut memory);
     let Memory { color, scratch, classes: states, other, .. } = &mut memory;
-    let noise = match known {
-        Some(known) => known.noise,
-        None => contact::noise(color, states, pictures.rounding(&plane), scratch)
-            .ok_or(ReliefError::TooFewPixels)?,
-    };
+    let noise =
+        contact::noise(color, states, pictures.rounding(&plane), scratch).ok_or(ReliefError::TooFewPixels)?;
     fill(&grid, color, states);
     contact::classify(&grid, color, noise, states, other);
     let mut cells = [0; 4];
@@ -116,14 +104,14 @@ struct Pictures<'a> {
 
 impl Pictures<'_> {
     /// The plane's polynomial; the averages of both pictures are in their planes then, dark spots left out.
-    fn average(&self, known: Option<KnownPlane>, memory: &mut Memory) -> Option<Polynomial> {
+    fn average(&self, known: Option<&Polynomial>, memory: &mut Memory) -> Option<Polynomial> {
         let Self { grid, image, background, usable } = self;
         let Memory { color, plane, scratch, classes, other } = memory;
         let source = background.unwrap_or(image);
         let source_usable =
             if background.is_some() { Usable::below(source.sample().saturation()) } else { *usable };
         let polynomial = if let Some(known) = known {
-            *known.plane
+            *known
         } else {
             let all = Selection { usable: source_usable, plane: None };
             cells::average(&mut [Source::new(source, all, plane)], grid, classes, other);
