@@ -29,6 +29,12 @@ install_packages() {
         apt-get install -qq -y --no-install-recommends "${lacking[@]}" >/dev/null
 }
 
+# reaches_pypi: whether Python's packages can be had, which Debian has not all of. Says so if not.
+reaches_pypi() {
+    python3 -c 'import urllib.request; urllib.request.urlopen("https://pypi.org/simple/maturin/", timeout=30)' 2>/dev/null ||
+        { echo "pypi.org is out of reach: what needs its packages is left out"; return 1; }
+}
+
 # need_cargo: a Rust toolchain cannot come from Debian's packages here.
 need_cargo() {
     if ! command -v cargo >/dev/null && [ -f "$HOME/.cargo/env" ]; then

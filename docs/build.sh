@@ -23,8 +23,7 @@ END
 RUSTDOCFLAGS="-D warnings" cargo doc --quiet --no-deps -p ofc-core --features full-streams
 rm -rf "$out/extra" && cp -r "$root/target/doc" "$out/extra"
 # Formulas without a network, where npm is there.
-if command -v npm >/dev/null; then
-    npm install --silent --prefix "$out/npm" mathjax@3
+if command -v npm >/dev/null && npm install --silent --prefix "$out/npm" mathjax@3; then
     mkdir -p "$out/extra/mathjax"
     cp "$out/npm/node_modules/mathjax/es5/tex-svg.js" "$out/extra/mathjax"
 fi

@@ -50,11 +50,11 @@ if [ -n "$fast" ]; then
     exit
 fi
 
-step "Python"
-bindings/python/test.sh
-
-step "documentation"
-docs/build.sh
+step "Python and the documentation"
+if reaches_pypi; then
+    bindings/python/test.sh
+    docs/build.sh
+fi
 
 step "firmware"
 ./c_examples/firmware/run.sh

@@ -5,6 +5,8 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 clone=$(cd "$here/../.." && pwd)
 export clone
+# shellcheck source-path=SCRIPTDIR source=../../.ci/packages.sh
+. "$clone/.ci/packages.sh"
 # What Rust's way compiles of others is kept.
 export CARGO_TARGET_DIR=$clone/target/newcomer
 work=$(mktemp -d)
@@ -16,7 +18,11 @@ program() {
 }
 
 python3 "$here/ball.py" make "$work"
-for way in c cpp fetch rust debian python; do
+ways=(c cpp fetch rust debian)
+if reaches_pypi; then
+    ways+=(python)
+fi
+for way in "${ways[@]}"; do
     began=$SECONDS folder=$work/$way
     # The wheel is that of the tests before, or nearly.
     [ "$way" != python ] || export CARGO_TARGET_DIR=$clone/target
