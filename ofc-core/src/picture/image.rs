@@ -15,7 +15,7 @@ use super::window::{WINDOW, Window, first_bits};
 /// `width` x `height`, row 0 at the top.
 ///
 /// # Example
-/// A region of interest of a larger picture, in OpenCV's order, and three gray pictures as one:
+/// A region of interest of a larger picture, in `OpenCV`'s order, and three gray pictures as one:
 /// ```
 /// use ofc_core::{Image, Order, Sample};
 ///
