@@ -102,7 +102,15 @@ pub unsafe extern "C" fn ofc_offset_fit(
         ensure(sample_size >= offset::LEAST, OFC_STATUS_INVALID_PARAMETER)?;
         let workspace = call.floats(workspace, workspace_bytes, offset::workspace_len(sample_size))?;
         let found = call.output(found)?;
-        *found = offset::fit(&picture, &inliers, &form, sample_size, workspace)?.to_c();
+        let fit: ofc_offset = offset::fit(&picture, &inliers, &form, sample_size, workspace)?.to_c();
+        // Colors or a C of extreme size determine nothing that floats hold.
+        let deviations = [fit.deviation, fit.deviation_around_black, fit.noise, fit.chi_squared];
+        let mut numbers =
+            fit.offset.iter().chain(&fit.covariance).chain(&fit.coefficients).chain(&deviations);
+        if !numbers.all(|number| number.is_finite()) {
+            return Ok(OFC_STATUS_UNDETERMINED);
+        }
+        *found = fit;
         Ok(OFC_STATUS_OK)
     })
 }
