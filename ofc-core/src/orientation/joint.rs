@@ -9,7 +9,8 @@
 //!   squares is taken off, and windows in which the condition fails lose weight.
 //! - *Outward normals* (`outward.rs`). On the whole a normal points away from the middle of its surface: the slopes of N over
 //!   position are to be along x and y. Pentland's tilts ask this of mean gradients, which the border of the surface alone decides;
-//!   regression listens to all of it. Both are used.
+//!   regression listens to all of it. Both are used. Where the surface looks like a part of a sphere about the middle of all of it,
+//!   shaded parts among them (`round.rs`), that decides.
 //!
 //! (r1, r2) -> -(r1, r2), the convex/concave twin, changes nothing in the first. The sign of `sum (x n1 + y n2) / n3`
 //! over the parts of the surface chooses: normals that point outward make a dome. `docs/joint-orientation.md` derives all of
@@ -29,6 +30,7 @@ mod moments;
 mod outward;
 mod record;
 mod result;
+mod round;
 mod scales;
 mod search;
 mod sums;

@@ -97,6 +97,17 @@ pub(super) const SMALLEST_SLOPE_VARIANCE: f64 = 1e-6;
 /// ten times n there, and so is their noise.
 pub(super) const SMALLEST_N3: f64 = 0.1;
 
+/// As how many independent places the deviations of a surface from a sphere count: those of one part of it lean to one side
+/// together. By trial.
+pub(super) const ROUND_PLACES: f64 = 10.0;
+
+/// The share of the variance that a sphere leaves at least, however round a surface looks. By trial.
+pub(super) const LEAST_UNEXPLAINED: f64 = 0.03;
+
+/// A surface of which a sphere leaves this share is as likely no part of one; those that lean, and are cut off around, leave as much.
+/// By trial: gels that a ball is pressed into leave less than half of it.
+pub(super) const ROUND: f64 = 0.1;
+
 // The choice of windows, and the answer.
 
 /// Larger windows are taken for a variance that is smaller by this factor at least: it does not hold what they hide of

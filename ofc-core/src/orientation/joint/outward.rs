@@ -11,6 +11,7 @@
 use super::cells::Cells;
 use super::constants::{PARTS, SLOPE_NEIGHBORS, SLOPE_WEIGHTS, SMALLEST_N3, SMALLEST_SLOPE_VARIANCE};
 use super::moments::Moments;
+use super::round::Round;
 use crate::math::mat3::{self, Mat3};
 use libm::sqrt;
 
@@ -72,6 +73,7 @@ impl Slopes {
 #[derive(Clone, Debug)]
 pub(super) struct Outward {
     slopes: Slopes,
+    round: Round,
     /// The sum of N.
     normal: [f64; 3],
     /// The mean position of the inliers from the middle of the whole surface, of which parts may be shaded.
@@ -147,13 +149,14 @@ impl Outward {
                 normal: part.normal.map(|sum| (sum / n) as f32),
             }
         });
-        Some(Self { slopes, normal: total.normal, from_middle: [x0 + x - wx, y0 + y - wy], parts })
+        let round = Round::of(cells, whole);
+        Some(Self { slopes, round, normal: total.normal, from_middle: [x0 + x - wx, y0 + y - wy], parts })
     }
 
     /// The negative log likelihood of `rows`.
     pub fn cost(&self, rows: &Mat3) -> f64 {
         let rows = &self.facing(*rows);
-        self.slopes.cost(rows, self.from_middle)
+        self.slopes.cost(rows, self.from_middle) + self.round.cost(rows)
     }
 
     /// `rows` with the sign of r3 that lets the surface face the camera.
