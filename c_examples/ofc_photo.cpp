@@ -2,7 +2,9 @@
 //
 // Shows how cv::Mat goes in and out of ofc, the whole solve and each of its stages, and what to do with a status.
 
+#include "common/progress.hpp"
 #include "common/scene.hpp"
+#include "photo/doubt.hpp"
 #include "photo/options.hpp"
 #include "photo/overview.hpp"
 #include "photo/paper_report.hpp"
@@ -15,13 +17,25 @@
 
 namespace {
 
-// What a run may write into its folder, but for the planes of --save-planes, which may be the next run's input.
-constexpr const char *const outputs[] = {"report.json",      "inliers.png",     "overview.png", "normals.png",
+// What a run may write into its folder.
+const std::vector<std::string> outputs = {"report.json",      "inliers.png",     "overview.png", "normals.png",
                                          "normals.tiff",     "uncertainty.png", "depth.tiff",   "depth.png",
                                          "uncertainty.tiff", "mesh.ply",        "classes.png", "albedo.png"};
+// What --save-planes writes, which may be the next run's input.
+constexpr const char *const planes[] = {"plane_r.png", "plane_g.png", "plane_b.png"};
+
+// Every stage by itself is run again to be timed, where that takes no time to speak of.
+constexpr int most_pixels_to_time = 4000000;
 
 int run(const Options &options)
 {
+    std::vector<std::string> names = outputs;
+    names.insert(names.end(), std::begin(paper_figures), std::end(paper_figures));
+    if (options.save_planes)
+        names.insert(names.end(), std::begin(planes), std::end(planes));
+    ResultFolder out(options.out, names, options.inputs());
+    Progress progress;
+    progress.stage("reading");
     Picture picture;
     cv::Mat truth;
     std::optional<cv::Matx33d> true_f;
@@ -35,23 +49,35 @@ int run(const Options &options)
         truth = scene.normals;
         true_f = scene.f;
     }
+    Steps steps;
+    const int orientation = picture.facts.orientation;
+    if (!options.mask.empty())
+        picture.mask = read_mask(options.mask, picture.size(), orientation);
+    picture = as_light(picture, options.light, steps);
+    if (options.light.fits_ambient()) {
+        progress.stage("fitting the ambient light");
+        const Ambient ambient = fit_ambient(picture, options.solve_params(OFC_ORIENTATION_JOINT), 4);
+        if (ambient.is_found)
+            picture = less(picture, ambient.offset);
+        steps.lines.emplace_back("ambient", ambient.in_words());
+        steps.report["ambient"] = ambient.report();
+    }
+    progress.clear();
+    for (const auto &[label, words] : steps.lines)
+        std::printf("%-10s %s\n", label.c_str(), words.c_str());
+    std::fflush(stdout);
     const Picture undivided = picture;
     std::optional<Picture> background;
     if (!options.background.empty()) {
-        background = read_picture(options.background);
-        picture = flattened(picture, *background, options.background);
+        background = background_as_light(read_picture(options.background), options.light, picture.facts);
+        const Picture flat = flattened(without_saturated(picture), *background, options.background);
+        picture.pixels = flat.pixels;
+        picture.green.release();
+        picture.blue.release();
+        picture.saturation = 0;
     }
-    if (!options.mask.empty())
-        picture.mask = read_mask(options.mask, picture.size());
     if (!options.truth.empty())
         truth = read_normals_tiff(options.truth, picture.size());
-    const std::filesystem::path out = options.out;
-    make_folder(out);
-    // What an earlier run left there is not this picture's.
-    for (const char *name : outputs)
-        std::filesystem::remove(out / name);
-    for (const char *name : paper_figures)
-        std::filesystem::remove(out / name);
 
     // The other model, whose picture is not divided by the background, and what the first one said, if it was asked.
     const auto relief = [&](const Result *ellipsoid) {
@@ -70,13 +96,17 @@ int run(const Options &options)
                 if (frame.mask.empty() && !picture.mask.empty())
                     found.restrict_to(picture.mask);
             }
-            write_relief(out.string(), frame, found, ellipsoid);
+            found.input = steps.report;
+            progress.stage("writing");
+            write_relief(options, frame, found, ellipsoid);
+            progress.clear();
+            out.keep();
             if (ellipsoid != nullptr)
                 std::printf("%-10s %s\n", "ellipsoid",
                             ellipsoid->solved() ? "fits fewer pixels, and expects larger errors" : ofc_status_message(ellipsoid->status));
             for (const Line &line : summary(found))
                 std::fprintf(found.solved() ? stdout : stderr, "%-10s %s\n", line.label.c_str(), line.text.c_str());
-            say_where(out, found.solved() ? "overview.png" : "report.json");
+            say_where(out.path(), found.solved() ? "overview.png" : "report.json");
         }
         return found;
     };
@@ -84,7 +114,9 @@ int run(const Options &options)
         return relief(nullptr).solved() ? 0 : 1;
 
     const auto solve_by = [&](const Picture &solved, ofc_orientation_method method) {
+        progress.stage("solving");
         Result result = solve(solved, options.solve_params(method), options.shadows, options.depth);
+        result.input = steps.report;
         result.true_f = true_f;
         if (result.solved() && !truth.empty())
             result.median_error_deg = median_angle_deg(result.normals, truth);
@@ -103,7 +135,9 @@ int run(const Options &options)
     if (options.paint.choice != "even") {
         Paint paint = paint_of(picture, options.seed);
         const bool is_wanted = asks_for_paint || is_better_even(paint, result.status, result.solution);
-        if (is_wanted && !paint.albedo.empty()) {
+        if (is_wanted)
+            divide_out(paint, picture);
+        if (!paint.albedo.empty()) {
             Result even = solve_by(paint.even, method);
             paint.taken = even.solved() || asks_for_paint;
             if (paint.taken) {
@@ -113,50 +147,59 @@ int run(const Options &options)
         }
         result.paint = paint;
     }
-    if (result.solved())
+    if (result.solved() && picture.size().area() <= most_pixels_to_time)
         time_stages(solved, result);
     if (result.solved() && options.whole()) {
         complete(result, solved, !options.planes.empty());
         if (!truth.empty())
             result.median_error_deg = median_angle_deg(result.normals, truth);
     }
+    if (result.solved() && !background && !picture.words.empty())
+        add_doubts(result, picture, options.light, options.solve_params(method));
 
+    progress.stage("writing");
     if (options.save_planes) {
         const cv::Mat channels[] = {picture.channel(0), picture.channel(1), picture.channel(2)};
-        const char *names[] = {"plane_r.png", "plane_g.png", "plane_b.png"};
         for (int c = 0; c < 3; c++)
-            write_image(out / names[c], channels[c]);
+            write_image(out / planes[c], channels[c]);
     }
     write_report(out / "report.json", result);
-    write_image(out / "inliers.png", result.inliers);
-    if (result.paint && result.paint->taken)
+    if (options.wants("inliers"))
+        write_image(out / "inliers.png", result.inliers);
+    if (options.wants("albedo") && result.paint && result.paint->taken)
         write_image(out / "albedo.png", result.paint->picture());
-    if (result.solved()) {
+    if (result.solved() && options.wants("normals")) {
         write_image(out / "normals.png", normal_map(result.normals));
         write_normals_tiff(out / "normals.tiff", result.normals);
+    }
+    if (result.surface.integrated() && options.wants("depth")) {
         write_tiff(out / "depth.tiff", result.surface.depth);
         write_image(out / "depth.png", options.depth.picture(result.surface));
-        write_mesh(out / "mesh.ply", result.surface, picture.display());
-        if (result.whole)
-            write_image(out / "classes.png", class_picture(*result.whole, cv::Rect({}, picture.size())));
     }
-    if (!result.uncertainty.empty()) {
+    if (result.whole && options.wants("classes"))
+        write_image(out / "classes.png", class_picture(*result.whole, cv::Rect({}, picture.size())));
+    if (result.surface.integrated() && options.wants("mesh"))
+        write_mesh(out / "mesh.ply", result.surface, picture.display(), options.mesh_faces);
+    if (!result.uncertainty.empty() && options.wants("uncertainty")) {
         write_tiff(out / "uncertainty.tiff", result.uncertainty);
         write_image(out / "uncertainty.png", uncertainty_picture(result, cv::Rect({}, picture.size())));
     }
-    write_image(out / "overview.png", overview(picture, result));
+    if (options.wants("overview"))
+        write_image(out / "overview.png", overview(picture, result));
+    progress.clear();
 
     if (options.paper_report() && result.solved()) {
         const Result direct = options.direct() ? result : solve_by(solved, OFC_ORIENTATION_DIRECT);
         if (!direct.solved())
             throw std::runtime_error(std::string("the direct method has no answer: ") + ofc_status_message(direct.status));
         print_paper_report(solved, direct);
-        write_paper_figures(out, solved, direct);
+        write_paper_figures(out.path(), solved, direct);
     } else {
         for (const Line &line : summary(result))
             std::fprintf(result.solved() ? stdout : stderr, "%-10s %s\n", line.label.c_str(), line.text.c_str());
     }
-    say_where(out, "overview.png");
+    out.keep();
+    say_where(out.path(), options.wants("overview") ? "overview.png" : "report.json");
     return result.solved() ? 0 : 1;
 }
 

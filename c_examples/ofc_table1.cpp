@@ -28,7 +28,7 @@ Options parse(int argc, char **argv)
                     "there is nothing");
     line.add_pixel_pitch(options.pixel_pitch, "Width of a pixel in the unit of DEPTH (default: 1)", "P");
     line.add_option("--noise", options.experiment.noise, "Standard deviation of the noise in gray levels (default: 1)")
-        ->check(CLI::Range(0.0, 255.0))
+        ->check(finite_between(0, 255))
         ->type_name("LEVELS");
     line.add_seed(options.experiment.seed, "noise, subsets and annealing");
     options.experiment.shadows.add_to(line);
@@ -99,11 +99,14 @@ std::vector<Line> summary(const Experiment &e)
 
 int run(const Options &options)
 {
+    const std::filesystem::path out = options.out;
+    ResultFolder results(out, {"table1.json", "overview.png", "directions.png", "fixed_points.png", "depth.png", "color.png", "inliers.png",
+                               "curves.png", "integral.png", "shaded_truth.png", "shaded_result.png", "angular_error.png",
+                               "gray_error.png", "channels.png"},
+                         {options.depth});
     const Relief relief = options.depth.empty() ? bust() : read_relief(options.depth, options.pixel_pitch);
     require_usable_slopes(relief, options.depth);
     const Experiment e = run_experiment(relief, options.experiment);
-    const std::filesystem::path out = options.out;
-    make_folder(out);
     write_json(out / "table1.json", report(options, e));
     if (e.solved()) {
         e.table.print();
@@ -123,6 +126,7 @@ int run(const Options &options)
         sheet.add(figure.title, figure.image, figure.span);
     }
     write_image(out / "overview.png", sheet.draw(summary(e)));
+    results.keep();
     say_where(out, "overview.png");
     return e.solved() ? 0 : 1;
 }

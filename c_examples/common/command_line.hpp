@@ -7,6 +7,11 @@
 #include <ofc.h>
 #include <string>
 
+// What numbers and names of files must be.
+CLI::Validator finite_between(double low, double high);
+extern const CLI::Validator whole_number; // from 0 to 2^64 - 1, in digits
+extern const CLI::Validator not_empty;
+
 // A command line with --help, --version and --out.
 class CommandLine : public CLI::App {
   public:

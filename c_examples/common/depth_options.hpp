@@ -8,6 +8,7 @@
 // What the user wants of the integration.
 struct DepthOptions {
     std::string method = "poisson"; // poisson, paper or coupled
+    bool is_wanted = true;
     double pixel_pitch = 0;         // in millimeters; 0 where not given: depth is in pixels
 
     // Adds --integrate and --pixel-pitch.

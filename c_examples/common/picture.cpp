@@ -7,16 +7,37 @@
 
 namespace {
 
-std::string size_text(cv::Size size)
-{
-    return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
-
 // Whether ofc has a format for the samples of a Mat.
 bool is_known(const cv::Mat &pixels)
 {
     return pixels.depth() == CV_8U || pixels.depth() == CV_16U || pixels.depth() == CV_32F;
 }
+
+// The gray values of a picture: its mean color where it has one, as a gray photograph that was saved in color has.
+cv::Mat gray_of(const cv::Mat &pixels)
+{
+    cv::Mat gray = pixels;
+    if (pixels.channels() > 1)
+        cv::cvtColor(pixels, gray, pixels.channels() == 4 ? cv::COLOR_BGRA2GRAY : cv::COLOR_BGR2GRAY);
+    return gray;
+}
+
+// Where the alpha channel is at least half of what is opaque; empty where there is none or all is opaque.
+cv::Mat opaque(const cv::Mat &pixels, const std::string &path)
+{
+    if (pixels.channels() != 4)
+        return {};
+    cv::Mat alpha;
+    cv::extractChannel(pixels, alpha, 3);
+    const double full = pixels.depth() == CV_8U ? 255 : pixels.depth() == CV_16U ? 65535 : 1;
+    const cv::Mat inside = alpha >= full / 2;
+    const int count = cv::countNonZero(inside);
+    if (count == 0)
+        throw UsageError(path + " is empty: its alpha channel is transparent everywhere");
+    return static_cast<std::size_t>(count) == inside.total() ? cv::Mat() : inside;
+}
+
+} // namespace
 
 // imread takes a file's channels 0, 1, 2 for r, g, b and swaps them.
 cv::Mat first_and_third_swapped(const cv::Mat &image)
@@ -24,16 +45,6 @@ cv::Mat first_and_third_swapped(const cv::Mat &image)
     cv::Mat swapped;
     cv::cvtColor(image, swapped, cv::COLOR_BGR2RGB);
     return swapped;
-}
-
-} // namespace
-
-cv::Mat read_image(const std::string &path, int flags)
-{
-    cv::Mat image = cv::imread(path, flags);
-    if (image.empty())
-        throw UsageError("cannot read " + path + " as an image");
-    return image;
 }
 
 ofc_image Picture::view() const
@@ -62,24 +73,42 @@ cv::Mat Picture::display() const
     return shown;
 }
 
+cv::Mat read_image(const std::string &path, int flags)
+{
+    cv::Mat image = cv::imread(path, flags);
+    if (image.empty())
+        throw UsageError("cannot read " + path + " as an image");
+    return image;
+}
+
 Picture read_picture(const std::string &path)
 {
+    ImageFile file = read_image_file(path);
     Picture picture;
-    picture.pixels = read_image(path, cv::IMREAD_UNCHANGED);
+    picture.pixels = file.pixels;
+    picture.facts = file.facts;
     if (picture.pixels.channels() < 3)
         throw UsageError(path + " is grayscale: ofc needs a color picture, or three grayscale ones with --planes");
     if (!is_known(picture.pixels))
         throw UsageError(path + " is neither of 8 nor 16 bits nor of 32-bit floats a channel");
+    if (const cv::Mat inside = opaque(picture.pixels, path); !inside.empty()) {
+        picture.mask = inside;
+        file.notes.push_back("its alpha channel is the mask where no other is given");
+    }
+    picture.words = file.in_words();
     return picture;
 }
 
 Picture read_planes(const std::string &red, const std::string &green, const std::string &blue)
 {
-    const auto plane = [](const std::string &path) {
-        cv::Mat image = read_image(path, cv::IMREAD_ANYDEPTH | cv::IMREAD_GRAYSCALE);
-        return image.isContinuous() ? image : image.clone(); // one stride for all three
-    };
     Picture picture;
+    const auto plane = [&](const std::string &path) {
+        const ImageFile file = read_image_file(path);
+        picture.facts = file.facts;
+        picture.words = file.in_words() + ", three planes";
+        const cv::Mat gray = gray_of(file.pixels);
+        return gray.isContinuous() ? gray : gray.clone(); // one stride for all three
+    };
     picture.pixels = plane(red);
     picture.green = plane(green);
     picture.blue = plane(blue);
@@ -92,37 +121,42 @@ Picture read_planes(const std::string &red, const std::string &green, const std:
     return picture;
 }
 
-cv::Mat read_mask(const std::string &path, cv::Size size)
+cv::Mat read_mask(const std::string &path, cv::Size size, int orientation)
 {
-    cv::Mat mask = read_image(path, cv::IMREAD_GRAYSCALE);
-    if (mask.size() != size)
-        throw UsageError("the mask is " + size_text(mask.size()) + ", the picture " + size_text(size));
-    return mask;
+    const ImageFile file = read_image_file(path);
+    cv::Mat colors = file.pixels;
+    if (colors.size() != size && orientation >= 5 && cv::Size(colors.rows, colors.cols) == size && file.facts.orientation == 1)
+        colors = upright(colors, orientation);
+    if (colors.size() != size)
+        throw UsageError("the mask is " + size_text(file.pixels.size()) + ", the picture " + size_text(size));
+    std::vector<cv::Mat> channels;
+    cv::split(colors, channels);
+    cv::Mat inside = cv::Mat::zeros(size, CV_8U);
+    double brightest = 0;
+    cv::minMaxLoc(colors.reshape(1), nullptr, &brightest);
+    for (std::size_t c = 0; c < std::min<std::size_t>(channels.size(), 3); c++)
+        inside |= file.facts.is_jpeg ? channels[c] >= 0.5 * std::max(brightest, 2.0) : channels[c] != 0;
+    if (channels.size() == 4) {
+        // Drawn in black on nothing, or in color on nothing.
+        const cv::Mat drawn = channels[3] != 0;
+        if (cv::countNonZero(inside) == 0)
+            drawn.copyTo(inside);
+        else
+            inside &= drawn;
+    }
+    if (cv::countNonZero(inside) == 0)
+        throw UsageError("the mask " + path + " is empty: all its pixels are zero");
+    return inside;
 }
 
 cv::Mat read_normals_tiff(const std::string &path, cv::Size size)
 {
-    const cv::Mat zyx = read_image(path, cv::IMREAD_UNCHANGED);
+    const cv::Mat zyx = read_image_file(path).pixels;
     if (zyx.type() != CV_32FC3)
         throw UsageError(path + " is not a TIFF of 3 x 32-bit floats");
     if (zyx.size() != size)
         throw UsageError("the true normals are " + size_text(zyx.size()) + ", the picture " + size_text(size));
     return first_and_third_swapped(zyx);
-}
-
-cv::Mat read_normal_map(const std::string &path)
-{
-    const cv::Mat colors = read_image(path, cv::IMREAD_UNCHANGED);
-    if (colors.type() == CV_32FC3)
-        return first_and_third_swapped(colors);
-    if (colors.type() != CV_8UC3 && colors.type() != CV_16UC3)
-        throw UsageError(path + " is neither a TIFF of 3 x 32-bit floats nor a color picture of 8 or 16 bits a channel");
-    cv::Mat normals;
-    colors.convertTo(normals, CV_32F, 2.0 / (colors.depth() == CV_8U ? 255 : 65535), -1);
-    for (auto n = normals.begin<cv::Vec3f>(); n != normals.end<cv::Vec3f>(); ++n)
-        if (*n == cv::Vec3f(-1, -1, -1)) // black
-            *n = cv::Vec3f();
-    return first_and_third_swapped(normals);
 }
 
 std::optional<double> median_angle_deg(const cv::Mat &normals, const cv::Mat &truth)
@@ -166,11 +200,16 @@ cv::Mat shade(const cv::Mat &normals, const cv::Vec3d &light)
 
 void write_image(const std::string &path, const cv::Mat &image, const std::vector<int> &parameters)
 {
-    bool written = false;
+    std::vector<uchar> bytes;
+    bytes.reserve(image.total() * image.elemSize() + (1 << 16));
+    bool encoded = false;
     try {
-        written = cv::imwrite(path, image, parameters);
+        encoded = cv::imencode(std::filesystem::path(path).extension(), image, bytes, parameters);
     } catch (const cv::Exception &) {
     }
-    if (!written)
+    if (!encoded)
         throw std::runtime_error("cannot write " + path);
+    WholeFile file(path);
+    file.write(bytes.data(), bytes.size());
+    file.finish();
 }

@@ -1,7 +1,9 @@
 // Pictures between files, cv::Mat and ofc.
 #pragma once
 
+#include "common/image_file.hpp"
 #include "common/program.hpp"
+#include "common/results.hpp"
 
 // OpenCV first: then ofc.hpp knows cv::Mat.
 #include <opencv2/core.hpp>
@@ -21,6 +23,9 @@ struct Picture {
     cv::Mat pixels;       // CV_8U, CV_16U or CV_32F with 3 or 4 channels; or the red plane
     cv::Mat green, blue;  // the other planes, or empty
     cv::Mat mask;         // CV_8U, or empty
+    double saturation = 0; // the level at which a channel saturates; 0 for the largest value of 8 and 16 bits
+    FileFacts facts;       // what its file says of it
+    std::string words;     // what was read, for people; empty for a picture that was made
 
     cv::Size size() const { return pixels.size(); }
 
@@ -34,24 +39,25 @@ struct Picture {
     cv::Mat display() const;
 };
 
-// cv::imread, or UsageError.
+// One frame of many, by cv::imread, or UsageError.
 cv::Mat read_image(const std::string &path, int flags);
 
+// A color picture. Its alpha channel, if it says anything, is the mask.
 Picture read_picture(const std::string &path);
 Picture read_planes(const std::string &red, const std::string &green, const std::string &blue);
 
-// Reads a mask of the picture's size.
-cv::Mat read_mask(const std::string &path, cv::Size size);
+// Reads a mask of the picture's size, of any depth and color: what is not zero is inside, or in a JPEG, which changes values a
+// little, what is at least half as bright as its brightest pixel. A picture's mask may have been drawn on the picture as it is
+// stored; `orientation` is the picture's.
+cv::Mat read_mask(const std::string &path, cv::Size size, int orientation = 1);
 
 // Normals are CV_32FC3 in the order x, y, z, zero where there is none. In the TIFF the samples are x, y, z too.
+cv::Mat first_and_third_swapped(const cv::Mat &image);
 cv::Mat read_normals_tiff(const std::string &path, cv::Size size);
 void write_normals_tiff(const std::string &path, const cv::Mat &normals);
 
 // Floats as they are, uncompressed.
 void write_tiff(const std::string &path, const cv::Mat &floats);
-
-// Reads such a TIFF of any size, or a picture of 8 or 16 bits with (n + 1) / 2 in r, g, b, black where there is none.
-cv::Mat read_normal_map(const std::string &path);
 
 // Median angle over the pixels where both have a normal; nothing where there is no such pixel.
 std::optional<double> median_angle_deg(const cv::Mat &normals, const cv::Mat &truth);

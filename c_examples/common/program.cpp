@@ -1,13 +1,18 @@
 #include "common/program.hpp"
 
+#include "common/results.hpp"
+
+#include <cerrno>
 #include <cstdio>
-#include <fstream>
+#include <cstring>
+#include <iostream>
 #include <nlohmann/json.hpp>
 
 int guarded(const char *program, const std::function<int()> &body)
 {
     try {
-        return body();
+        const int status = body();
+        return status_of_output() == 0 ? status : 1;
     } catch (const UsageError &error) {
         std::fprintf(stderr, "%s: %s\n", program, error.what());
         return 2;
@@ -25,6 +30,15 @@ void make_folder(const std::filesystem::path &folder)
         throw UsageError("cannot make the folder " + folder.string() + ": " + failure.message());
 }
 
+int status_of_output()
+{
+    std::cout.flush();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout)
+        return 0;
+    std::fprintf(stderr, "cannot write to standard output: %s\n", std::strerror(errno));
+    return 1;
+}
+
 void say_where(const std::filesystem::path &folder, const char *first)
 {
     std::printf("wrote %s: look at %s\n", std::filesystem::absolute(folder).lexically_normal().c_str(), first);
@@ -32,8 +46,8 @@ void say_where(const std::filesystem::path &folder, const char *first)
 
 void write_json(const std::filesystem::path &path, const nlohmann::json &report)
 {
-    std::ofstream file(path);
-    file << report.dump(2) << '\n';
-    if (!file)
-        throw std::runtime_error("cannot write " + path.string());
+    const std::string text = report.dump(2) + '\n';
+    WholeFile file(path);
+    file.write(text.data(), text.size());
+    file.finish();
 }

@@ -81,7 +81,7 @@ Relief bust()
 
 Relief read_relief(const std::string &path, double pixel_pitch)
 {
-    const cv::Mat image = read_image(path, cv::IMREAD_UNCHANGED);
+    const cv::Mat image = read_image_file(path).pixels;
     Relief relief;
     relief.pixel_pitch = pixel_pitch;
     if (image.type() == CV_16UC1)

@@ -4,8 +4,9 @@
 
 #include <chrono>
 #include <cmath>
-#include <fstream>
+#include <cstring>
 #include <limits>
+#include <sstream>
 
 ofc_depth_map depth_map_of(const cv::Mat &depth, double pixel_pitch, const cv::Mat &mask)
 {
@@ -48,8 +49,34 @@ cv::Mat normals_of(const ofc_depth_map &map)
     return normals;
 }
 
-void write_mesh(const std::string &path, const Surface &surface, const cv::Mat &bgr)
+namespace {
+
+// Every `step`-th pixel, in the middle of the picture.
+cv::Mat thin(const cv::Mat &map, int step)
 {
+    const cv::Point first((map.cols - 1) % step / 2, (map.rows - 1) % step / 2);
+    const cv::Size size((map.cols - 1) / step + 1, (map.rows - 1) / step + 1);
+    cv::Mat few(size, map.type());
+    for (int y = 0; y < size.height; y++)
+        for (int x = 0; x < size.width; x++)
+            std::memcpy(few.ptr(y, x), map.ptr(first.y + y * step, first.x + x * step), map.elemSize());
+    return few;
+}
+
+} // namespace
+
+void write_mesh(const std::string &path, const Surface &surface, const cv::Mat &bgr, std::size_t most_faces)
+{
+    // Two triangles a pixel.
+    const double faces = 2.0 * cv::countNonZero(surface.depth == surface.depth);
+    if (most_faces > 0 && faces > static_cast<double>(most_faces)) {
+        const int step = static_cast<int>(std::ceil(std::sqrt(faces / static_cast<double>(most_faces))));
+        Surface few = surface;
+        few.depth = thin(surface.depth, step);
+        few.params.pixel_pitch *= step;
+        write_mesh(path, few, thin(bgr, step), 0);
+        return;
+    }
     const cv::Mat &depth = surface.depth;
     const cv::Mat normals = normals_of(surface.view());
     const double pitch = surface.params.pixel_pitch;
@@ -74,13 +101,15 @@ void write_mesh(const std::string &path, const Surface &surface, const cv::Mat &
                     triangles.push_back(t);
         }
 
-    std::ofstream file(path, std::ios::binary);
-    const auto put = [&](const auto &value) { file.write(reinterpret_cast<const char *>(&value), sizeof value); };
+    WholeFile file(path);
+    const auto put = [&](const auto &value) { file.write(&value, sizeof value); };
     const bool little = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
-    file << "ply\nformat " << (little ? "binary_little_endian" : "binary_big_endian") << " 1.0\nelement vertex " << pixels.size()
+    std::ostringstream head;
+    head << "ply\nformat " << (little ? "binary_little_endian" : "binary_big_endian") << " 1.0\nelement vertex " << pixels.size()
          << "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
             "property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face "
          << triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
+    file.write(head.str().data(), head.str().size());
     for (const cv::Point &at : pixels) {
         const cv::Vec3b color = bgr.at<cv::Vec3b>(at);
         put(cv::Vec3f(static_cast<float>((at.x - (depth.cols - 1) / 2.0) * pitch),
@@ -92,6 +121,5 @@ void write_mesh(const std::string &path, const Surface &surface, const cv::Mat &
         put(uchar(3));
         put(triangle);
     }
-    if (!file.flush())
-        throw std::runtime_error("cannot write " + path);
+    file.finish();
 }

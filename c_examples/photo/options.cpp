@@ -1,5 +1,7 @@
 #include "photo/options.hpp"
 
+#include <algorithm>
+
 namespace {
 
 void check_together(const Options &options)
@@ -7,9 +9,23 @@ void check_together(const Options &options)
     const bool own_scene = options.image.empty() && options.planes.empty();
     if (own_scene && (!options.mask.empty() || !options.truth.empty() || !options.background.empty()))
         throw CLI::RequiredError("IMAGE or --planes, to which --mask, --truth and --background belong,");
+    if (options.light.fits_ambient() && (!options.background.empty() || options.model == "relief"))
+        throw CLI::ExcludesError("--ambient fit", "--background and --model relief");
 }
 
 } // namespace
+
+bool Options::wants(const char *output) const
+{
+    return outputs.empty() || std::find(outputs.begin(), outputs.end(), output) != outputs.end();
+}
+
+std::vector<std::string> Options::inputs() const
+{
+    std::vector<std::string> files = {image, mask, truth, background, light.dark};
+    files.insert(files.end(), planes.begin(), planes.end());
+    return files;
+}
 
 ofc_solve_params Options::solve_params(ofc_orientation_method method) const
 {
@@ -39,16 +55,22 @@ Options parse_options(int argc, char **argv)
     CommandLine line("ofc_photo",
                      "Surface normals from one color picture of a matte, uniformly colored object under colored lights.\n"
                      "Without IMAGE it renders a scene of its own and compares with the truth.");
-    auto *image = line.add_option("IMAGE", options.image, "Color picture of 8 or 16 bits a channel (PNG, TIFF, ...)");
+    auto *image = line.add_option("IMAGE", options.image, "Color picture of 8 or 16 bits or floats a channel (PNG, JPEG, TIFF, ...)");
+    image->check(not_empty);
     line.add_option("--planes", options.planes, "Three grayscale pictures, each under one light, instead of IMAGE")
         ->expected(3)
+        ->check(not_empty)
         ->type_name("R.png G.png B.png")
         ->excludes(image);
-    line.add_option("--mask", options.mask, "Gray picture, 0 where pixels are to be left out")->type_name("MASK.png");
+    line.add_option("--mask", options.mask, "Picture of any depth and color, 0 where pixels are to be left out (default: the alpha channel of IMAGE)")
+        ->check(not_empty)
+        ->type_name("MASK.png");
     line.add_option("--background", options.background,
                     "Picture of the same flat surface without the object, to divide by: for near lights")
+        ->check(not_empty)
         ->type_name("BG.png");
     line.add_option("--truth", options.truth, "True normals to compare with: TIFF of 3 x float32, x right, y up, z out")
+        ->check(not_empty)
         ->type_name("NORMALS.tiff");
     line.add_seed(options.seed, "the random subsets");
     line.add_option("--subsets", options.subsets, "Random subsets to draw (default: as many as needed)")
@@ -69,8 +91,9 @@ Options parse_options(int argc, char **argv)
         ->check(CLI::IsMember({"auto", "ellipsoid", "relief"}));
     line.add_option("--ball-radius", options.ball_radius,
                     "Radius in pixels of the one ball that is pressed into the surface: it gives a relief its scale")
-        ->check(CLI::PositiveNumber)
+        ->check(finite_between(1e-3, 1e6))
         ->type_name("PX");
+    options.light.add_to(line);
     options.shadows.add_to(line);
     options.paint.add_to(line);
     options.depth.add_to(line);
@@ -81,8 +104,18 @@ Options parse_options(int argc, char **argv)
     line.add_flag("--lit-only", options.lit_only,
                   "Normals and depth of the pixels that see all lights and obey the model; without it the whole surface in the\n"
                   "mask, shadows too. --integrate with anything but poisson includes it");
+    line.add_option("--outputs", options.outputs,
+                    "What to write beside report.json, with commas: normals, uncertainty, depth, mesh, overview, inliers, classes,\n"
+                    "albedo (default: all of them)")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"normals", "uncertainty", "depth", "mesh", "overview", "inliers", "classes", "albedo"}))
+        ->type_name("LIST");
+    line.add_option("--mesh-faces", options.mesh_faces, "Triangles of the mesh at most, 0 for all (default: 2000000)")
+        ->check(whole_number)
+        ->type_name("N");
     line.add_flag("--save-planes", options.save_planes, "Write the channels as three gray pictures, as --planes takes them");
     line.parse_or_exit(argc, argv, [&] { check_together(options); });
     options.out = line.out;
+    options.depth.is_wanted = options.wants("depth") || options.wants("mesh") || options.wants("overview");
     return options;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/depth_options.hpp"
+#include "photo/light.hpp"
 #include "photo/paint.hpp"
 
 #include <cstdint>
@@ -18,12 +19,20 @@ struct Options {
     std::string model = "auto"; // auto, ellipsoid or relief
     double ball_radius = 0;     // in pixels; 0 where not given
     ShadowOption shadows;
+    LightOptions light;
     PaintOption paint;
     DepthOptions depth;
     bool convex = false, hollow = false; // what the caller knows of the surface
     bool lit_only = false;    // normals of pixels that see all lights, and nothing else
     bool save_planes = false; // the channels as three gray pictures
+    std::vector<std::string> outputs; // what to write beside the report; empty: everything
+    std::size_t mesh_faces = 2000000; // at most; 0: as many as there are
     std::string out;
+
+    // Whether this is wanted: normals, uncertainty, depth, mesh, overview, inliers, classes or albedo.
+    bool wants(const char *output) const;
+    // The files that are read.
+    std::vector<std::string> inputs() const;
 
     bool direct() const { return orientation == "direct"; }
     // Shadows and all else that the mask holds. How to span gaps is a question of lit pixels alone.

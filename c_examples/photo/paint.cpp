@@ -29,6 +29,15 @@ const char *verdict_name(ofc_paint_verdict verdict)
     }
 }
 
+ofc_paint_params params_of(const Picture &picture, std::uint64_t seed)
+{
+    ofc_paint_params params;
+    ofc_paint_params_default(&params);
+    params.seed = seed;
+    params.saturation = picture.saturation;
+    return params;
+}
+
 } // namespace
 
 void PaintOption::add_to(CLI::App &app)
@@ -84,23 +93,30 @@ cv::Mat Paint::picture() const
 Paint paint_of(const Picture &picture, std::uint64_t seed)
 {
     Paint paint;
-    ofc_paint_params params;
-    ofc_paint_params_default(&params);
-    params.seed = seed;
+    const ofc_paint_params params = params_of(picture, seed);
     const ofc_image image = picture.view();
-    ofc::Workspace workspace(OFC_LARGER(ofc_paint_workspace_size(), ofc_paint_albedo_workspace_size(image.width, image.height)));
+    ofc::Workspace workspace(ofc_paint_workspace_size());
     paint.status = ofc_paint_estimate(&image, &params, workspace.data(), workspace.bytes(), &paint.estimate);
+    return paint;
+}
+
+void divide_out(Paint &paint, const Picture &picture)
+{
+    if (paint.status < 0)
+        return;
+    ofc_paint_params params = params_of(picture, 0);
+    const ofc_image image = picture.view();
+    ofc::Workspace workspace(ofc_paint_albedo_workspace_size(image.width, image.height));
     cv::Mat albedo(picture.size(), CV_32F), pixels(picture.size(), CV_32FC3);
-    if (paint.status >= 0 && ofc_paint_albedo(&image, &params, paint.estimate.coefficients, workspace.data(), workspace.bytes(),
-                                              albedo.ptr<float>(), albedo.step) == OFC_STATUS_OK &&
-        ofc_paint_divide(&image, &params, albedo.ptr<float>(), albedo.step, pixels.ptr<float>(), pixels.step) ==
-            OFC_STATUS_OK) {
+    if (ofc_paint_albedo(&image, &params, paint.estimate.coefficients, workspace.data(), workspace.bytes(), albedo.ptr<float>(),
+                         albedo.step) == OFC_STATUS_OK &&
+        ofc_paint_divide(&image, &params, albedo.ptr<float>(), albedo.step, pixels.ptr<float>(), pixels.step) == OFC_STATUS_OK) {
         cv::cvtColor(pixels, pixels, cv::COLOR_RGB2BGR);
         paint.albedo = albedo;
         paint.even.pixels = pixels;
         paint.even.mask = picture.mask;
+        paint.even.facts = picture.facts;
     }
-    return paint;
 }
 
 bool is_better_even(const Paint &paint, ofc_status plain, const ofc_solution &solution)

@@ -20,7 +20,7 @@ struct PaintOption {
 struct Paint {
     ofc_status status = OFC_STATUS_OK;
     ofc_paint estimate = {};
-    cv::Mat albedo; // CV_32F with the median 1, NaN where a pixel is not usable; empty where there is no C
+    cv::Mat albedo; // CV_32F with the median 1, NaN where a pixel is not usable; empty until it is divided out
     Picture even;   // the picture divided by it
     bool taken = false; // whether the solution is that of the picture without its paint
 
@@ -33,8 +33,11 @@ struct Paint {
     cv::Mat picture() const;
 };
 
-// The paint of a picture.
+// What the paint of a picture is like.
 Paint paint_of(const Picture &picture, std::uint64_t seed);
+
+// Finds the albedo, and the picture without it, where there is a C.
+void divide_out(Paint &paint, const Picture &picture);
 
 // Whether the picture without its paint is to be solved, given how the picture as it is was: where that has no answer for want of
 // determination, and where its fit leaves far more noise than there is across the direction of the colors, and paint is known well.

@@ -78,6 +78,7 @@ json report(const ReliefResult &result, const Result *ellipsoid)
                    {"status_code", result.status},
                    {"version", ofc_version_string()},
                    {"model", "relief"},
+                   {"input", result.input},
                    {"reason", is_solved ? json(nullptr) : json(no_relief(result))}};
     if (ellipsoid != nullptr)
         report["ellipsoid"] = {{"status", ofc_status_message(ellipsoid->status)}, {"status_code", ellipsoid->status}};
@@ -127,10 +128,12 @@ void ReliefResult::restrict_to(const cv::Mat &mask)
         surface.depth.setTo(std::nan(""), outside);
 }
 
-ReliefResult solve_relief(const Picture &picture, const Picture *background, const ofc_relief_params &params)
+ReliefResult solve_relief(const Picture &picture, const Picture *background, const ofc_relief_params &given)
 {
     const ofc_image image = picture.view();
     const std::optional<ofc_image> plane = view_of(background);
+    ofc_relief_params params = given;
+    params.saturation = picture.saturation;
     ReliefResult result;
     result.classes = cv::Mat::zeros(picture.size(), CV_8U);
     ofc::Workspace workspace(ofc_relief_workspace_size(image.width, image.height));
@@ -221,19 +224,28 @@ std::vector<Line> summary(const ReliefResult &result)
     return lines;
 }
 
-void write_relief(const std::string &folder, const Picture &picture, const ReliefResult &result, const Result *ellipsoid)
+void write_relief(const Options &options, const Picture &picture, const ReliefResult &result, const Result *ellipsoid)
 {
+    const std::string &folder = options.out;
     write_json(folder + "/report.json", report(result, ellipsoid));
     if (!result.solved())
         return;
-    write_image(folder + "/classes.png", class_picture(result.classes));
-    write_image(folder + "/normals.png", normal_map(result.normals));
-    write_normals_tiff(folder + "/normals.tiff", result.normals);
-    write_tiff(folder + "/uncertainty.tiff", result.uncertainty);
-    if (result.surface.integrated()) {
-        write_tiff(folder + "/depth.tiff", result.surface.depth);
-        write_image(folder + "/depth.png", result.depth.picture(result.surface));
-        write_mesh(folder + "/mesh.ply", result.surface, picture.display());
+    if (options.wants("classes"))
+        write_image(folder + "/classes.png", class_picture(result.classes));
+    if (options.wants("normals")) {
+        write_image(folder + "/normals.png", normal_map(result.normals));
+        write_normals_tiff(folder + "/normals.tiff", result.normals);
     }
-    write_image(folder + "/overview.png", overview(picture, result));
+    if (options.wants("uncertainty"))
+        write_tiff(folder + "/uncertainty.tiff", result.uncertainty);
+    if (result.surface.integrated()) {
+        if (options.wants("depth")) {
+            write_tiff(folder + "/depth.tiff", result.surface.depth);
+            write_image(folder + "/depth.png", result.depth.picture(result.surface));
+        }
+        if (options.wants("mesh"))
+            write_mesh(folder + "/mesh.ply", result.surface, picture.display(), options.mesh_faces);
+    }
+    if (options.wants("overview"))
+        write_image(folder + "/overview.png", overview(picture, result));
 }

@@ -1,6 +1,7 @@
 // Pictures most of which is one flat surface: the relief on it.
 #pragma once
 
+#include "photo/options.hpp"
 #include "photo/report.hpp"
 
 struct ReliefResult {
@@ -11,6 +12,7 @@ struct ReliefResult {
     cv::Mat uncertainty;     // CV_32F, 1-sigma angle in degrees, NaN where there is no normal
     DepthOptions depth;
     Surface surface;         // over the whole frame, zero on the plane
+    nlohmann::ordered_json input; // what was read, and what became of it
     std::optional<double> median_error_deg; // over the contact, where the truth is known
 
     // Whether to take it instead of the first model: that is refused, or leaves out many pixels and expects larger errors.
@@ -33,7 +35,7 @@ const char *no_relief(const ReliefResult &result);
 // How far to trust it, in words.
 std::string trust(const ReliefResult &result);
 
-// Writes all files of a relief into a folder. `ellipsoid` is what the first model says of the picture; null where it was not asked.
-void write_relief(const std::string &folder, const Picture &picture, const ReliefResult &result, const Result *ellipsoid);
+// Writes the files of a relief that are wanted. `ellipsoid` is what the first model says of the picture; null where it was not asked.
+void write_relief(const Options &options, const Picture &picture, const ReliefResult &result, const Result *ellipsoid);
 
 std::vector<Line> summary(const ReliefResult &result);

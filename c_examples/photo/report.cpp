@@ -114,6 +114,14 @@ json uncertainty(const Result &result)
             {"covariance_of_F", rows(result.covariance.f, 9)}};
 }
 
+json doubts(const Result &result)
+{
+    json list = json::array();
+    for (const Doubt &doubt : result.doubts)
+        list.push_back({{"in_words", doubt.words}, {"turn_deg", doubt.degrees}});
+    return list;
+}
+
 // Numbers that are not known, which are NaN, become null.
 json confidence(const Result &result)
 {
@@ -122,7 +130,8 @@ json confidence(const Result &result)
         return nullptr;
     const ofc_confidence &c = result.solution.confidence;
     return {{"evidence", names[c.evidence]},
-            {"expected_error_deg", degrees(c.error_rad)},
+            {"expected_error_deg", error_as_a_whole(result)},
+            {"doubts", doubts(result)},
             {"convexity", c.convexity},
             {"open_outline", result.open_outline},
             {"second_best", c.log_likelihood_margin},
@@ -186,6 +195,7 @@ void write_report(const std::string &path, const Result &result)
           {"subsets", s.fit.subsets},
           {"fit", result.params.lmeds.method == OFC_FIT_LEAST_SQUARES ? "squares" : "median"},
           {"orientation", result.params.orientation_method == OFC_ORIENTATION_DIRECT ? "direct" : "joint"}}},
+        {"input", result.input},
         {"shadows", result.shadows},
         {"pixels",
          {{"usable", s.pixel_counts.usable},
@@ -226,7 +236,7 @@ void write_report(const std::string &path, const Result &result)
         report["paint"] = result.paint->report();
     if (result.check)
         report["check"] = check_report(*result.check);
-    if (result.solved())
+    if (result.solved() && result.depth.is_wanted)
         report["depth"] = result.depth.report(result.surface);
     if (result.whole)
         report["surface"] = ::report(*result.whole);

@@ -18,6 +18,12 @@ struct Whole {
     ofc_surface_result result = {};
 };
 
+// What may be otherwise: by how many degrees the normals would turn then, at half of them.
+struct Doubt {
+    std::string words;
+    double degrees;
+};
+
 struct Result {
     ofc_status status = OFC_STATUS_OK;
     ofc_solve_params params = {};
@@ -33,6 +39,8 @@ struct Result {
     std::optional<Whole> whole;     // where it was made
     std::optional<Paint> paint;     // where it was looked for
     std::optional<ofc_check_result> check; // where there are normals
+    std::vector<Doubt> doubts;      // which the uncertainty includes
+    nlohmann::ordered_json input;   // what was read, and what became of it
     std::vector<std::pair<std::string, double>> milliseconds; // by stage, in the order they run
 
     // Where the truth is known.

@@ -66,6 +66,7 @@ Result solve(const Picture &picture, const ofc_solve_params &params, const Shado
     Result result;
     result.params = params;
     shadows.apply_to(result.params);
+    result.params.lmeds.saturation = picture.saturation;
     result.depth = depth;
     result.inliers = cv::Mat::zeros(picture.size(), CV_8U);
     result.normals = cv::Mat::zeros(picture.size(), CV_32FC3);
@@ -85,7 +86,8 @@ Result solve(const Picture &picture, const ofc_solve_params &params, const Shado
     });
     add_uncertainty(image, result);
     result.open_outline = open_outline(picture.mask, result.inliers, result.normals);
-    result.surface = integrate(result.normals, spanned(result.inliers, picture.mask), depth.params());
+    if (depth.is_wanted)
+        result.surface = integrate(result.normals, spanned(result.inliers, picture.mask), depth.params());
     result.check = check(image, result);
     return result;
 }

@@ -71,7 +71,17 @@ double open_outline(const cv::Mat &mask, const cv::Mat &inliers, const cv::Mat &
     return sides > 0 ? static_cast<double>(open) / sides : std::nan("");
 }
 
-std::string trust(const Result &result)
+double error_as_a_whole(const Result &result)
+{
+    double error = degrees(result.solution.confidence.error_rad);
+    for (const Doubt &doubt : result.doubts)
+        error = std::hypot(error, doubt.degrees);
+    return error;
+}
+
+namespace {
+
+std::string trust_without_doubts(const Result &result)
 {
     const ofc_confidence &c = result.solution.confidence;
     const auto [is_told, words] = shape(result);
@@ -92,5 +102,15 @@ std::string trust(const Result &result)
     // A hundredth as likely.
     const char *second = c.log_likelihood_margin < 4.6 ? "; another is not ruled out" : "";
     return text("%s%s: expected to be off by %.1f degrees, as a whole by %.1f; orientation %s, %s%s", level, condition, sigma,
-                degrees(c.error_rad), evidence, words.c_str(), second);
+                error_as_a_whole(result), evidence, words.c_str(), second);
+}
+
+} // namespace
+
+std::string trust(const Result &result)
+{
+    std::string words = trust_without_doubts(result);
+    for (const Doubt &doubt : result.doubts)
+        words += text("; %s (the normals would turn by %.1f degrees)", doubt.words.c_str(), doubt.degrees);
+    return words;
 }

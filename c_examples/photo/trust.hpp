@@ -12,4 +12,7 @@ double open_outline(const cv::Mat &mask, const cv::Mat &inliers, const cv::Mat &
 
 // How far to trust the normals, in plain words: what error is to be expected or that it is not known, what decided, and
 // whether the picture can tell a convex surface from a hollow one.
+// How far the normals are expected to be off as a whole, in degrees: what the solution knows, and what may be otherwise.
+double error_as_a_whole(const Result &result);
+
 std::string trust(const Result &result);

@@ -1,0 +1,146 @@
+#include "common/image_file.hpp"
+
+#include "common/program.hpp"
+
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+#include <turbojpeg.h>
+
+namespace {
+
+// Nothing that is written to std::cerr is seen while there is one.
+struct Quiet {
+    std::ostringstream words;
+    std::streambuf *const before = std::cerr.rdbuf(words.rdbuf());
+    Quiet() = default;
+    Quiet(const Quiet &) = delete;
+    Quiet &operator=(const Quiet &) = delete;
+    ~Quiet() { std::cerr.rdbuf(before); }
+};
+
+// OpenCV's reader fills a JPEG that is cut with gray and says nothing; libjpeg says what is wrong.
+cv::Mat read_jpeg(const std::string &path)
+{
+    std::ifstream file(path, std::ios::binary);
+    const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::unique_ptr<void, int (*)(tjhandle)> decoder(tjInitDecompress(), tjDestroy);
+    int width = 0, height = 0, subsampling = 0, colors = 0;
+    const auto check = [&](int failure) {
+        if (failure != 0)
+            throw UsageError(path + " is cut or damaged: " + tjGetErrorStr2(decoder.get()));
+    };
+    check(tjDecompressHeader3(decoder.get(), bytes.data(), bytes.size(), &width, &height, &subsampling, &colors));
+    if (colors == TJCS_CMYK || colors == TJCS_YCCK)
+        throw UsageError(path + " holds printing colors (CMYK): ofc needs red, green and blue");
+    const bool is_gray = colors == TJCS_GRAY;
+    cv::Mat pixels(height, width, is_gray ? CV_8UC1 : CV_8UC3);
+    check(tjDecompress2(decoder.get(), bytes.data(), bytes.size(), pixels.data, width, static_cast<int>(pixels.step), height,
+                        is_gray ? TJPF_GRAY : TJPF_BGR, 0));
+    return pixels;
+}
+
+// The page with the most pixels, of which the first.
+cv::Mat largest_page(const std::string &path, std::size_t pages, std::vector<std::string> &notes)
+{
+    cv::Mat largest;
+    std::size_t chosen = 0;
+    std::string first;
+    for (std::size_t page = 0; page < pages; page++) {
+        std::vector<cv::Mat> read;
+        if (!cv::imreadmulti(path, read, static_cast<int>(page), 1, cv::IMREAD_UNCHANGED) || read.empty())
+            throw UsageError(path + " is cut or damaged: page " + std::to_string(page + 1) + " of " + std::to_string(pages) +
+                             " cannot be read");
+        if (page == 0)
+            first = size_text(read[0].size());
+        if (read[0].total() > largest.total()) {
+            largest = read[0];
+            chosen = page;
+        }
+    }
+    notes.push_back(std::to_string(pages) + " pages, of which the first is " + first + ": took page " + std::to_string(chosen + 1) +
+                    (chosen == 0 ? "" : ", the largest, " + size_text(largest.size())));
+    return largest;
+}
+
+cv::Mat read_other(const std::string &path, const FileFacts &facts, std::vector<std::string> &notes)
+{
+    // What is wrong is said below; OpenCV's own words are about its sources.
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    const Quiet quiet;
+    cv::Mat pixels;
+    try {
+        const std::size_t pages = facts.is_tiff ? cv::imcount(path) : 1;
+        pixels = pages > 1 ? largest_page(path, pages, notes) : cv::imread(path, cv::IMREAD_UNCHANGED);
+    } catch (const cv::Exception &) {
+        throw UsageError("cannot read " + path + " as an image: it is damaged, or larger than 2^30 pixels");
+    }
+    if (pixels.empty())
+        throw UsageError("cannot read " + path + " as an image" +
+                         (facts.is_png || facts.is_tiff ? ": it is cut or damaged, or of a kind that is not read" : ""));
+    return pixels;
+}
+
+} // namespace
+
+std::string size_text(cv::Size size)
+{
+    return std::to_string(size.width) + " x " + std::to_string(size.height);
+}
+
+cv::Mat upright(const cv::Mat &stored, int orientation)
+{
+    cv::Mat turned = stored;
+    if (orientation >= 5)
+        turned = stored.t();
+    // About which axes to mirror it then, as cv::flip has them.
+    constexpr int both = -1, rows = 0, columns = 1;
+    switch (orientation) {
+    case 2:
+    case 6:
+        cv::flip(turned, turned, columns);
+        break;
+    case 3:
+    case 7:
+        cv::flip(turned, turned, both);
+        break;
+    case 4:
+    case 8:
+        cv::flip(turned, turned, rows);
+        break;
+    default:
+        break;
+    }
+    return turned;
+}
+
+std::string ImageFile::in_words() const
+{
+    static const char *const depths[] = {"8 bits", "8 bits", "16 bits", "16 bits", "32 bits", "32-bit floats", "64-bit floats"};
+    std::string words = size_text(pixels.size()) + ", " + depths[pixels.depth()] + " in " + std::to_string(pixels.channels()) +
+                        (pixels.channels() == 1 ? " channel" : " channels");
+    for (const std::string &note : notes)
+        words += "; " + note;
+    return words;
+}
+
+ImageFile read_image_file(const std::string &path)
+{
+    if (!std::ifstream(path))
+        throw UsageError("cannot read " + path + ": there is no such file, or it may not be read");
+    ImageFile file;
+    file.path = path;
+    file.facts = facts_of(path);
+    file.pixels = file.facts.is_jpeg ? read_jpeg(path) : read_other(path, file.facts, file.notes);
+    if (file.facts.orientation > 1) {
+        // OpenCV turns what it reads of a TIFF.
+        if (!file.facts.is_tiff)
+            file.pixels = upright(file.pixels, file.facts.orientation);
+        file.notes.push_back(std::string("its orientation is ") + orientation_in_words(file.facts.orientation) + ", and that was done");
+    }
+    return file;
+}
