@@ -19,6 +19,8 @@ constexpr double chi_squared_of_one = 16.3, chi_squared_to_speak = 60, gain_to_s
 
 // Linear pictures fit worse as sRGB, by a third and more, and those that are sRGB as much better.
 constexpr double much_better = 0.85;
+// And then the model explains the colors, where a gel or a near light looks like a curve too.
+constexpr double down_to_noise = 1.3;
 
 struct Solved {
     ofc_status status;
@@ -197,7 +199,7 @@ void add_doubts(Result &result, const Picture &picture, const LightOptions &opti
             const Picture undone = linearized(thin, {Kind::srgb, "", 2.2, {}});
                     const double straight = misfit(thin, is), bent = misfit(undone, solve_quietly(undone, params));
             result.input["transfer"]["misfit"] = {{"as_it_is", straight}, {"as_srgb", bent}};
-            if (bent < much_better * straight)
+            if (bent < much_better * straight && bent < down_to_noise)
                 add(result, thin, is, undone, params,
                     "the colors fit better as sRGB, and were taken for linear: --transfer srgb undoes it, --transfer linear rules it out");
         }
