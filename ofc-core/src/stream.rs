@@ -10,9 +10,9 @@
 //! of four pixels the first of them ends with F. Then normals and inliers of any row can be had, and one pass over a few
 //! rows of a later frame refines the model.
 //!
-//! Where the sample has room for all pixels the result is that of [`solve`](crate::solve::solve), bit for bit, but for the
-//! integral of a lone candidate, which is not computed (infinite). Without the feature `full-streams` there is the
-//! direct method alone, shadows are kept, and errors of the fit are not computed (its covariance is zero).
+//! Where the sample has room for all pixels, and these are fewer than 131,072, the result is that of
+//! [`solve`](crate::solve::solve), bit for bit, but for the integral of a lone candidate, which is not computed (infinite). Without the
+//! feature `full-streams` there is the direct method alone, shadows are kept, and errors of the fit are not computed (its covariance is zero).
 
 mod cold;
 mod drift;

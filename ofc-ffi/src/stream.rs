@@ -187,7 +187,8 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 /// refine it; for the other rows ofc_stream_row() does next to nothing.
 ///
 /// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of as
-/// many windows as the memory holds. Where the sample holds all pixels, or with the direct method all usable pixels,
+/// many windows as the memory holds. Where the sample holds all pixels, or with the direct method all usable pixels, and
+/// there are fewer than 131,072 of them, above which ofc_solve() takes some numbers from a sample of the rows,
 /// the solution is equal to that of ofc_solve() bit by bit, but for the integral of a lone candidate, which is not
 /// computed (infinite), and but for `reason` and what follows from it: streams do not look for reasons. Without the
 /// feature `full-streams` fit.covariance is NaN: not known.

@@ -45,10 +45,6 @@ void target(void)
     float *const angle = rows(sizeof(float), sizeof(float), &single), *const depth = rows(sizeof(float), sizeof(float), &floats);
     uint8_t *const classes = rows(1, 1, &singles);
     ofc_surface_result *const result = TAKE(ofc_surface_result, 1);
-    /* Open: a picture all of whose pixels are rejected is refused, as if the workspace were too small, when these are written already. */
-    void *const written[] = {normals, angle, depth, classes};
-    for (size_t i = 0; i < sizeof written / sizeof *written; i++)
-        is_scratch(written[i]);
     if (picture.bad)
         must_be_refused();
     const ofc_status status =

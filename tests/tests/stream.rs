@@ -198,7 +198,10 @@ fn frames_too_low_for_cells_take_the_direct_method() {
 fn masked_photographs_give_the_same_bits() {
     for name in ["cat_figurine", "gelsight_ball_6mm", "gelsight_ball_9mm"] {
         let Some(photograph) = load(name) else { return };
-        let image = photograph.image();
+        // Of a larger picture solve() takes some numbers from a sample of its rows.
+        let (whole, most) = (photograph.image(), 131_071);
+        let height = whole.height().min(most / whole.width());
+        let image = whole.crop([0, (whole.height() - height) / 2], [whole.width(), height]).expect("a part");
         let params = sampling((image.width() * image.height()) as u32);
         println!("{name}: {:?}", methods(params).map(|params| assert_same(&image, params)));
     }

@@ -62,7 +62,11 @@ pub(super) fn weight(angle: f32, [.., n3]: Vector) -> f32 {
 /// Leaves the chosen normals in the state, the surface that they make, and in its ratios how clear each choice between images was.
 pub(super) fn choose(state: &mut State, known: &Known, rim: Option<f32>) -> Result<DepthResult, DepthError> {
     begin(state, known, rim);
-    let mut result = state.integrate(Method::Coupled, FIRST_TOLERANCE)?;
+    let mut result = state.integrate(Method::Coupled, FIRST_TOLERANCE);
+    if result == Err(DepthError::Empty) {
+        // No color says anything: the flattest surface there is.
+        state.flatten();
+    }
     for round in 0..ROUNDS {
         let loudness = if round < CAREFUL_ROUNDS { 0.5 } else { 1.0 };
         let is_last = round + 1 == ROUNDS;
@@ -110,9 +114,9 @@ pub(super) fn choose(state: &mut State, known: &Known, rim: Option<f32>) -> Resu
         let strictness = if 2 * round < ROUNDS { STRICT } else { LENIENT };
         guess_others(state, known, strictness);
         let tolerance = if is_last { FINAL_TOLERANCE } else { TOLERANCE };
-        result = state.integrate(Method::Poisson, tolerance)?;
+        result = state.integrate(Method::Poisson, tolerance);
     }
-    Ok(result)
+    result
 }
 
 /// How badly an image agrees with the surface so far.

@@ -61,6 +61,13 @@ impl State<'_> {
         depth::integrate(&input, &params, arena, self.depth.data, self.depth.row_stride)
     }
 
+    /// Makes the surface a plane that faces the camera.
+    pub fn flatten(&mut self) {
+        for y in 0..self.size[1] {
+            self.depth.row_mut(y).fill(0.0);
+        }
+    }
+
     /// Four pictures of a number a pixel, in the integrator's memory.
     pub fn planes(singles: &mut [f32], [width, height]: [usize; 2]) -> [&mut [f32]; 4] {
         let mut planes = singles.chunks_exact_mut((width * height).max(1));

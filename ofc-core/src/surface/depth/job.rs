@@ -83,8 +83,7 @@ impl Job<'_> {
         for y in 0..grid.height {
             self.output.row_mut(y).fill(0.0);
         }
-        let work =
-            Work { residual: fine.residual, correction: fine.correction, direction: Some(fine.direction) };
+        let work = Work { residual: fine.residual, correction: fine.correction, direction: fine.direction };
         let stop = Stop {
             residual: params.tolerance * norm,
             energy: size.energy,

@@ -12,7 +12,7 @@
 use super::coarsen::equations;
 use super::grid::Grid;
 use super::hierarchy::Hierarchy;
-use super::operator::{Operator, copy};
+use super::operator::Operator;
 use super::span::{Span, StoredSpan};
 use super::sweep::{self, Buffers, dot, map_row, rows_at};
 use libm::sqrt;
@@ -72,8 +72,7 @@ impl Output<'_> {
 pub(super) struct Work<'a> {
     pub residual: &'a mut [f32],
     pub correction: &'a mut [f32],
-    /// Without it every step is one of steepest descent.
-    pub direction: Option<&'a mut [f32]>,
+    pub direction: &'a mut [f32],
 }
 
 /// One V-cycle on `right`; returns the product of `right` and `correction`.
@@ -144,7 +143,7 @@ fn turn<O: Operator>(
 pub(super) fn solve<O: Operator>(
     finest: &O,
     hierarchy: &mut Hierarchy,
-    mut work: Work,
+    work: Work,
     output: &mut Output,
     buffers: &mut Buffers,
     stop: Stop,
@@ -162,22 +161,14 @@ pub(super) fn solve<O: Operator>(
         }
         let product = cycle(finest, hierarchy, work.residual, work.correction, buffers)?;
         let spans = &*hierarchy.spans;
-        let direct = work.direction.as_deref_mut();
-        let applied = if let Some(direction) = direct {
-            let factor = if last_product > 0.0 { product / last_product } else { 0.0 };
-            turn(finest, spans, factor as f32, direction, work.correction)
-        } else {
-            energy(finest, spans, work.correction, buffers)
-        };
+        let factor = if last_product > 0.0 { product / last_product } else { 0.0 };
+        let applied = turn(finest, spans, factor as f32, work.direction, work.correction);
         // Both are positive unless nothing but rounding is left.
         if !(product > 0.0 && applied > 0.0) {
             break;
         }
         let step = (product / applied) as f32;
-        squared = match work.direction.as_deref() {
-            Some(direction) => advance(&grid, spans, step, direction, work.correction, work.residual, output),
-            None => advance_directly(finest, spans, step, work.correction, work.residual, output, buffers),
-        };
+        squared = advance(&grid, spans, step, work.direction, work.correction, work.residual, output);
         explained += product / applied * product;
         // As if this step took from the energy what the last one did.
         missing = if last_product > 0.0 { product / last_product * product } else { f64::INFINITY };
@@ -219,47 +210,6 @@ fn advance(
         for (r, &a) in row.iter_mut().zip(span.cut(grid.row(applied, y))) {
             *r -= step * a;
         }
-        squared += dot(row, row);
-    }
-    squared
-}
-
-/// The product of `array` and `A array`.
-fn energy<O: Operator>(operator: &O, spans: &[StoredSpan], array: &[f32], buffers: &mut Buffers) -> f64 {
-    let grid = operator.grid();
-    let [applied, ..] = buffers.cut(grid.width);
-    let mut product = 0.0;
-    for y in 0..grid.height {
-        let (span, row) = (Span::load(spans, y, grid.width), grid.row(array, y));
-        map_row(operator, span, y, rows_at(&grid, array, y), row, applied, |p| -p.flow);
-        product += dot(span.cut(row), span.cut(applied));
-    }
-    product
-}
-
-/// Does what [`advance`] does, without an array that holds `A direction`.
-fn advance_directly<O: Operator>(
-    operator: &O,
-    spans: &[StoredSpan],
-    step: f32,
-    direction: &[f32],
-    residual: &mut [f32],
-    output: &mut Output,
-    buffers: &mut Buffers,
-) -> f64 {
-    let grid = operator.grid();
-    let [next, ..] = buffers.cut(grid.width);
-    let mut squared = 0.0;
-    for y in 0..grid.height {
-        let span = Span::load(spans, y, grid.width);
-        let depths = span.cut_mut(output.row_mut(y));
-        for (z, &d) in depths.iter_mut().zip(span.cut(grid.row(direction, y))) {
-            *z += step * d;
-        }
-        let row = grid.row_mut(residual, y);
-        map_row(operator, span, y, rows_at(&grid, direction, y), row, next, |p| p.right + step * p.flow);
-        let row = span.cut_mut(row);
-        copy(row, span.cut(next));
         squared += dot(row, row);
     }
     squared
