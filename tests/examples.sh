@@ -51,7 +51,7 @@ refuses() {
 
 expect 0 ./c_examples/run.sh --lit-only --out "$out/scene"
 says "median error"
-says "shadows    rejected (auto): left out 32080 pixels"
+says "shadows    rejected (auto): left out 32238 pixels"
 for file in normals.png normals.tiff inliers.png report.json overview.png depth.tiff depth.png mesh.ply uncertainty.tiff \
     uncertainty.png; do
     [ -s "$out/scene/$file" ] || fail "no $file"
@@ -71,7 +71,7 @@ refuses "$out/scene/normals.png" 420 440 000000:1
 # The mesh opens in other programs, with the size that the report says.
 assimp info "$out/scene/mesh.ply" >"$out/mesh" || fail "assimp cannot read mesh.ply"
 json "$out/scene/report.json" 'r["depth"]["converged"] and r["depth"]["residual"] <= 1e-4'
-json "$out/scene/report.json" "near([r['depth']['range'][0], $(sed -n 's/Minimum point .* \(.*\))/\1/p' "$out/mesh")], -57.6, 1.7)"
+json "$out/scene/report.json" "near([r['depth']['range'][0], $(sed -n 's/Minimum point .* \(.*\))/\1/p' "$out/mesh")], -54.4, 1.6)"
 json "$out/scene/report.json" "abs(r['depth']['range'][0] - $(sed -n 's/Minimum point .* \(.*\))/\1/p' "$out/mesh")) < 1e-3"
 
 photo=target/c_examples/ofc_photo
@@ -115,14 +115,14 @@ expect 0 "$photo" --planes "$out/behind/r.tiff" "$out/behind/g.tiff" "$out/behin
     --lit-only --out "$out/behind"
 says "above 90 degrees: a light from behind"
 json "$out/behind/report.json" 'r["from_behind"] == [False, False, True] and r["median_error_deg"] < 0.87' # 0.84
-json "$out/behind/report.json" 'near(r["slant_deg"], [40, 40, 105], 0.83)' # 0.80
+json "$out/behind/report.json" 'near(r["slant_deg"], [40, 40, 105], 0.90)' # 0.87
 
 # Table 1 by the paper's method. The paper's own median errors on its bust are 21.51 and 16.80 degrees.
 table1=target/c_examples/ofc_table1
 expect 0 "$table1" --out "$out/table1"
 says "channel maxima"
 says "shadows by the direct method: kept (auto)"
-says "shadows by the joint method: rejected (auto): left out 32080 pixels"
+says "shadows by the joint method: rejected (auto): left out 32238 pixels"
 report=$out/table1/table1.json
 json "$report" 'r["usable"] == 101370 and r["inliers"] > 90000 and len(r["median_error_deg"]) == 6'
 json "$report" 'r["median_error_deg"]["direct method (OFC)"] < 6.90' # 6.70
@@ -155,8 +155,8 @@ picture "$out/table1/overview.png" 2180 2264 282828:1800
 for name in depth angular_error gray_error; do picture "$out/table1/$name.png" 570 490 282828:500; done
 for name in color inliers shaded_truth shaded_result; do picture "$out/table1/$name.png" 420 440; done
 expect 0 "$table1" --shadows reject --out "$out/table1_shadows"
-says "shadows by the direct method: rejected: left out 32080 pixels"
-json "$out/table1_shadows/table1.json" 'r["usable"] == 101370 - 32080 and r["median_error_deg"]["direct method (OFC)"] < 6.56' # 6.37
+says "shadows by the direct method: rejected: left out 32238 pixels"
+json "$out/table1_shadows/table1.json" 'r["usable"] == 101370 - 32238 and r["median_error_deg"]["direct method (OFC)"] < 5.97' # 5.79
 expect 2 "$table1" --shadows maybe
 expect 0 "$table1" "$out/scene/depth.tiff" --noise 0 --out "$out/table1_tiff"
 json "$out/table1_tiff/table1.json" 'r["noise"] == 0 and r["inliers"] > 55000' # 56,178
@@ -243,12 +243,12 @@ expect 1 "$live" "$out/untouched" --out "$out/again"
 
 # Table 2, section 5's checks and their figures, by the direct method whatever the rest of the program does.
 expect 0 "$photo" --report paper --out "$out/paper"
-for line in "direct method" "shadows kept (auto)" "Lee-Rosenfeld" "24.64     35.10     15.98" "correlation of input" "shaded depth" \
+for line in "direct method" "shadows kept (auto)" "Lee-Rosenfeld" "24.64     35.11     15.98" "correlation of input" "shaded depth" \
     "coefficient" "median angular error: 6.70 degrees" "outward normals ask for: 4.01 degrees"; do says "$line"; done
 json "$out/paper/report.json" 'r["parameters"]["orientation"] == "joint" and r["median_error_deg"] < 2.64'
 json "$out/paper/report.json" 'near(r["check"]["correlation"], [0.993, 0.997, 0.989], 0.001)'
 json "$out/paper/report.json" 'r["rank"]["colors"] == 3 and r["rank"]["normals"] == 3'
-json "$out/paper/report.json" 'near(r["check"]["depth"]["tilt_difference_deg"], [2.53, -1.07, -1.74], 0.1)'
+json "$out/paper/report.json" 'near(r["check"]["depth"]["tilt_difference_deg"], [1.91, -1.27, -2.24], 0.1)'
 picture "$out/paper/directions.png" 1600 440 0072b2:400 d55e00:450 009e73:420
 picture "$out/paper/curves.png" 520 440 009e73:140 d22828:75
 picture "$out/paper/ellipsoid.png" 520 440 0072b2:1200 d55e00:60 bebebe:100
@@ -262,7 +262,7 @@ json "$out/paper/report.json" 'r["confidence"]["evidence"] == "tilts alone" and 
 json "$out/paper/report.json" 'near([r["check"]["turn"]["deg"]], 4.01, 0.12)'
 json "$out/scene/report.json" 'r["check"]["turn"]["deg"] < 0.01 < r["check"]["turn"]["expected_deg"]' # 0 by construction
 json "$out/scene/report.json" 'r["confidence"]["expected_error_deg"] < 0.99 and "trust" in r["confidence"]["in_words"]' # 0.96
-json "$out/scene/report.json" 'r["pixels"]["shaded"] == 32080 and r["from_behind"] == [False] * 3'
+json "$out/scene/report.json" 'r["pixels"]["shaded"] == 32238 and r["from_behind"] == [False] * 3'
 # Reasons: of a good picture none; of its gray plane, and of an empty mask.
 json "$out/scene/report.json" 'r["reason"] is None and r["rank"] and r["confidence"]["open_outline"] < 0.5'
 expect 0 "$photo" --save-planes --out "$out/planes_of_scene"

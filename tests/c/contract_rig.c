@@ -419,8 +419,9 @@ static void a_background_is_followed(void **state)
     static float background[DOWN][ACROSS][3];
     static uint8_t classes[DOWN][ACROSS];
     const size_t stride = sizeof background[0];
+    float *const all = background[0][0];
     for (int i = 0; i < 3 * ALL; i++)
-        background[0][0][i] = NAN;
+        all[i] = NAN;
     const ofc_image image = image_of(frame), below = image_of(plane);
 #define FOLLOW(image, classes, level, rate, background, stride)                                                            ofc_rig_background_follow(image, classes, level, rate, background, stride)
     assert_int_equal(FOLLOW(&below, NULL, 0, 0.25, background[0][0], stride), OFC_STATUS_OK);
