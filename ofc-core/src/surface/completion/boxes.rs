@@ -1,11 +1,15 @@
 //! Sums over square windows.
 
+use super::map::row_of;
+
 /// Replaces every number by the sum over the window of `2 radius + 1` pixels a side around it, of what lies in the picture.
 ///
 /// Sums run along, one number coming and one going: the cost does not depend on the size of the window.
 pub(super) fn sums(values: &mut [f32], between: &mut [f32], width: usize, radius: usize) {
     let step = width.max(1);
-    for (row, out) in values.chunks_exact(step).zip(between.chunks_exact_mut(step)) {
+    let rows = values.len().checked_div(step).unwrap_or(0);
+    for (y, out) in between.chunks_exact_mut(step).enumerate().take(rows) {
+        let row = row_of(values, step, y);
         let mut sum: f32 = row.iter().take(radius).sum();
         let coming = row.iter().skip(radius).copied().chain(core::iter::repeat(0.0));
         let going = core::iter::repeat_n(0.0, radius + 1).chain(row.iter().copied());
@@ -14,12 +18,11 @@ pub(super) fn sums(values: &mut [f32], between: &mut [f32], width: usize, radius
             *out = sum;
         }
     }
-    let rows = values.len().checked_div(step).unwrap_or(0);
     // The first row is summed in place, each next one from the one above it.
     for y in 0..rows {
         let (above, rest) = values.split_at_mut_checked(y * step).unwrap_or_default();
         let Some(out) = rest.get_mut(..step) else { return };
-        let row = |y: usize| between.get(y * step..(y + 1) * step).unwrap_or_default();
+        let row = |y: usize| row_of(between, step, y);
         if y == 0 {
             out.fill(0.0);
             for coming in 0..=radius {

@@ -6,7 +6,7 @@
 
 use super::boxes;
 use super::class::{TWO_LIGHTS, class, single_light};
-use super::map::{Map, Vectors};
+use super::map::{Map, Vectors, row_of};
 use super::two::Fold;
 use super::vector::{Vector, dot};
 
@@ -109,7 +109,8 @@ pub(super) fn gather(ratios: &mut [f32], classes: &Map<u8>, [sum, support, total
         if !any {
             continue;
         }
-        for (y, (row, total)) in ratios.chunks_exact_mut(width).zip(total.chunks_exact(width)).enumerate() {
+        for (y, row) in ratios.chunks_exact_mut(width).enumerate() {
+            let total = row_of(total, width, y);
             for ((ratio, total), &byte) in row.iter_mut().zip(total).zip(classes.row(y)) {
                 if is_ours(byte) {
                     *ratio = total.clamp(-CERTAIN, CERTAIN);

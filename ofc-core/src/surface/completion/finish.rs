@@ -7,6 +7,7 @@ use super::class::{
 };
 use super::distance::{self, FAR, STEP};
 use super::histogram::Histogram;
+use super::map::row_of;
 use super::slopes;
 use super::state::{Known, State};
 use super::vector::{Vector, ZERO, distance_squared};
@@ -36,8 +37,8 @@ pub(super) fn finish(state: &mut State, known: &Known, orientation_variance: f32
     let step = width.max(1);
     let [p, q, gaps, between] = State::planes(state.singles, state.size);
     slopes::of(&state.depth, &state.classes, 1, [&mut *p, &mut *q, &mut *gaps, &mut *between]);
-    let rows = p.chunks_exact(step).zip(q.chunks_exact(step)).zip(gaps.chunks_exact_mut(step));
-    for (y, ((p, q), gaps)) in rows.enumerate() {
+    for (y, gaps) in gaps.chunks_exact_mut(step).enumerate() {
+        let [p, q] = [row_of(p, step, y), row_of(q, step, y)];
         let pixels = state.classes.row(y).iter().zip(state.normals.row_mut(y));
         for (((&byte, n), (&p, &q)), gap) in pixels.zip(p.iter().zip(q)).zip(gaps) {
             let surface = slopes::normal(p, q);

@@ -3,6 +3,12 @@
 use super::vector::{Vector, ZERO};
 use crate::picture::span;
 
+/// Row `y` of numbers without gaps, none where there is none. (Two `chunks_exact` side by side keep a division that can fail.)
+pub(super) fn row_of(numbers: &[f32], width: usize, y: usize) -> &[f32] {
+    let start = y.wrapping_mul(width);
+    numbers.get(start..start.wrapping_add(width)).unwrap_or_default()
+}
+
 /// A number a pixel.
 #[derive(Debug)]
 pub(super) struct Map<'a, T> {
