@@ -7,7 +7,7 @@ use super::class::{
 };
 use super::distance::{self, FAR, STEP};
 use super::histogram::Histogram;
-use super::map::row_of;
+use super::map::{row_of, row_of_mut};
 use super::slopes;
 use super::state::{Known, State};
 use super::vector::{Vector, ZERO, distance_squared};
@@ -55,10 +55,8 @@ pub(super) fn finish(state: &mut State, known: &Known, orientation_variance: f32
         }
     }
     // Around the pixels of the mask's border there are fewer.
-    for ((count, bytes), _) in
-        p.chunks_exact_mut(step).zip((0..height).map(|y| state.classes.row(y))).zip(0..height)
-    {
-        for (count, &byte) in count.iter_mut().zip(bytes) {
+    for y in 0..height {
+        for (count, &byte) in row_of_mut(p, step, y).iter_mut().zip(state.classes.row(y)) {
             *count = if byte == 0 { 0.0 } else { 1.0 };
         }
     }

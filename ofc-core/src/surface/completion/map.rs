@@ -9,6 +9,12 @@ pub(super) fn row_of(numbers: &[f32], width: usize, y: usize) -> &[f32] {
     numbers.get(start..start.wrapping_add(width)).unwrap_or_default()
 }
 
+/// The same, to be written.
+pub(super) fn row_of_mut(numbers: &mut [f32], width: usize, y: usize) -> &mut [f32] {
+    let start = y.wrapping_mul(width);
+    numbers.get_mut(start..start.wrapping_add(width)).unwrap_or_default()
+}
+
 /// A number a pixel.
 #[derive(Debug)]
 pub(super) struct Map<'a, T> {

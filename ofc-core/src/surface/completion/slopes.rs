@@ -1,7 +1,7 @@
 //! The slopes of the depth that there is so far, smoothed.
 
 use super::boxes;
-use super::map::Map;
+use super::map::{Map, row_of_mut};
 use super::vector::{Vector, unit};
 
 /// Writes the mean slopes p and q over windows of `2 radius + 1` pixels a side into the first two planes; the other two are used
@@ -9,8 +9,8 @@ use super::vector::{Vector, unit};
 pub(super) fn of(depth: &Map<f32>, classes: &Map<u8>, radius: usize, planes: [&mut [f32]; 4]) {
     let width = classes.width.max(1);
     let [p, q, count, between] = planes;
-    let rows = p.chunks_exact_mut(width).zip(q.chunks_exact_mut(width)).zip(count.chunks_exact_mut(width));
-    for (y, ((p, q), count)) in rows.enumerate() {
+    for (y, p) in p.chunks_exact_mut(width).enumerate() {
+        let [q, count] = [row_of_mut(q, width, y), row_of_mut(count, width, y)];
         let (above, here, below) = (depth.row(y.wrapping_sub(1)), depth.row(y), depth.row(y + 1));
         let [up, own, down] = [y.wrapping_sub(1), y, y + 1].map(|y| classes.row(y));
         let row = p.iter_mut().zip(q.iter_mut()).zip(count.iter_mut());
