@@ -171,10 +171,8 @@ impl<'a> Image<'a> {
         }
         let start = y * self.row_stride + x * self.pixel_stride;
         let channels = self.channels.map(|channel| channel.get(start..).unwrap_or_default());
-        match (self.sample, self.pixel_stride) {
-            (Sample::U8, 3) => return read_pixels::<3>(channels, len, window),
-            (Sample::U8, 4) => return read_pixels::<4>(channels, len, window),
-            _ => {}
+        if let (Sample::U8, 3 | 4) = (self.sample, self.pixel_stride) {
+            return read_pixels(channels, self.pixel_stride, len, window);
         }
         for (bytes, out) in channels.iter().zip(&mut window.color) {
             let out = out.get_mut(..len).unwrap_or_default();
@@ -218,26 +216,28 @@ impl Pixels for Image<'_> {
     }
 }
 
-/// Pixels of `STRIDE` bytes, three or four, as many as `len`: a word each, which holds its three channels, and from the words
-/// each channel at once.
-fn read_pixels<const STRIDE: usize>(channels: [&[u8]; 3], len: usize, window: &mut Window) {
+/// Pixels of three or four bytes, `len` of them at least if there are so many: a word each, which holds its three channels, and from
+/// the words each channel at once.
+fn read_pixels(channels: [&[u8]; 3], stride: usize, len: usize, window: &mut Window) {
     let [red, _, blue] = channels;
     let (pixels, shifts) = if red.len() >= blue.len() { (red, [0, 8, 16]) } else { (blue, [16, 8, 0]) };
     let mut words = [0_u32; WINDOW];
-    if len == WINDOW
-        && let Some(pixels) = pixels.get(..STRIDE * WINDOW + 1)
+    if stride == 4 {
+        for (pixel, word) in pixels.as_chunks().0.iter().zip(&mut words) {
+            *word = u32::from_le_bytes(*pixel);
+        }
+    } else if len == WINDOW
+        && let Some(pixels) = pixels.get(..3 * WINDOW + 1)
     {
         // The compiler knows that all of these words are within.
         for (i, word) in words.iter_mut().enumerate() {
-            if let Some(bytes) = pixels.get(i * STRIDE..).and_then(<[u8]>::first_chunk) {
+            if let Some(bytes) = pixels.get(i * 3..).and_then(<[u8]>::first_chunk) {
                 *word = u32::from_le_bytes(*bytes);
             }
         }
     } else {
-        for (pixel, word) in pixels.as_chunks::<STRIDE>().0.iter().zip(&mut words).take(len) {
-            if let Some(&[a, b, c]) = pixel.first_chunk() {
-                *word = u32::from_le_bytes([a, b, c, 0]);
-            }
+        for (&[a, b, c], word) in pixels.as_chunks().0.iter().zip(&mut words) {
+            *word = u32::from_le_bytes([a, b, c, 0]);
         }
     }
     for (channel, shift) in window.color.iter_mut().zip(shifts) {
