@@ -149,26 +149,27 @@ pub(super) fn solve<O: Operator>(
     stop: Stop,
 ) -> Option<Outcome> {
     let grid = finest.grid();
-    let mut squared = norm_squared(&grid, hierarchy.spans, work.residual);
+    let Work { residual, correction, direction } = work;
+    let mut squared = norm_squared(&grid, hierarchy.spans, residual);
     let (start, mut least) = (squared, squared);
     let (mut last_product, mut missing, mut explained) = (0.0, f64::INFINITY, 0.0);
     let mut cycles = 0;
     while cycles < stop.cycles {
-        let residual = sqrt(squared);
+        let norm = sqrt(squared);
         let noise = (stop.energy - explained).max(ROUNDING * stop.energy) / stop.equations;
-        if residual <= ENOUGH * stop.residual || residual <= stop.residual && missing <= NOISE * noise {
+        if norm <= ENOUGH * stop.residual || norm <= stop.residual && missing <= NOISE * noise {
             break;
         }
-        let product = cycle(finest, hierarchy, work.residual, work.correction, buffers)?;
+        let product = cycle(finest, hierarchy, residual, correction, buffers)?;
         let spans = &*hierarchy.spans;
         let factor = if last_product > 0.0 { product / last_product } else { 0.0 };
-        let applied = turn(finest, spans, factor as f32, work.direction, work.correction);
+        let applied = turn(finest, spans, factor as f32, direction, correction);
         // Both are positive unless nothing but rounding is left.
         if !(product > 0.0 && applied > 0.0) {
             break;
         }
         let step = (product / applied) as f32;
-        squared = advance(&grid, spans, step, work.direction, work.correction, work.residual, output);
+        squared = advance(&grid, spans, step, direction, correction, residual, output);
         explained += product / applied * product;
         // As if this step took from the energy what the last one did.
         missing = if last_product > 0.0 { product / last_product * product } else { f64::INFINITY };
