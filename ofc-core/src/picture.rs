@@ -13,7 +13,7 @@ mod image;
 mod layout;
 mod mask;
 mod pixels;
-mod rows;
+pub(crate) mod rows;
 pub mod saturation;
 pub mod transfer;
 mod usable;

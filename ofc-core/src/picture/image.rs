@@ -136,6 +136,12 @@ impl<'a> Image<'a> {
         (self.width * self.height / ENOUGH_PIXELS).min(self.height / ENOUGH_ROWS).max(1)
     }
 
+    /// Those rows: the whole of a small picture, and a sample of a larger one.
+    #[must_use]
+    pub fn sample_rows(&self) -> Self {
+        self.rows_apart(self.sample_step())
+    }
+
     /// The `width` x `height` pixels from column `x` and row `y` on, with their mask, as a picture; `None` where they are none
     /// or not all within this one.
     #[must_use]
@@ -212,7 +218,7 @@ impl Pixels for Image<'_> {
     }
 
     fn of_part<R>(&self, visit: impl FnOnce(&Self) -> R) -> R {
-        visit(&self.rows_apart(self.sample_step()))
+        visit(&self.sample_rows())
     }
 }
 

@@ -1,4 +1,4 @@
-//! Colors that are written beside a picture: rows of r, g, b as single-precision numbers.
+//! Numbers that are written beside a picture: rows of as many for each pixel, in single precision.
 
 use super::image::Image;
 use super::layout::{ImageError, span};
@@ -8,20 +8,20 @@ use super::window::Window;
 /// between rows is left alone.
 ///
 /// # Errors
-/// What [`span`] refuses, and [`ImageError::TooShort`] where `pixels` ends before the last row; `pixels` is untouched then.
-pub(super) fn write(
+/// What [`span`] refuses, and [`ImageError::TooShort`] where `out` ends before the last row; `out` is untouched then.
+pub(crate) fn write<const N: usize>(
     image: &Image,
-    pixels: &mut [f32],
+    out: &mut [f32],
     row_stride: usize,
-    mut fill: impl FnMut(&Window, &mut [[f32; 3]]),
+    mut fill: impl FnMut(&Window, &mut [[f32; N]]),
 ) -> Result<(), ImageError> {
-    if pixels.len() < span(image.width(), image.height(), 3, row_stride)? {
+    if out.len() < span(image.width(), image.height(), N, row_stride)? {
         return Err(ImageError::TooShort);
     }
     image.for_each_window(|window| {
-        let start = window.y * row_stride + window.x * 3;
-        let out = pixels.get_mut(start..start + window.len * 3).unwrap_or_default();
-        fill(window, out.as_chunks_mut::<3>().0);
+        let start = window.y * row_stride + window.x * N;
+        let out = out.get_mut(start..start + window.len * N).unwrap_or_default();
+        fill(window, out.as_chunks_mut::<N>().0);
     });
     Ok(())
 }

@@ -111,8 +111,7 @@ fn without_extremes(image: &Image, saturation: f32, workspace: &mut [f32]) -> Us
     const MANY_TIMES: f32 = 20.0;
     let usable = Usable::below(saturation);
     let brightest = |r: f32, g: f32, b: f32| f64::from(r.max(g).max(b));
-    let values =
-        image.rows_apart(image.sample_step()).gather(|window| usable.exposed(window), workspace, brightest);
+    let values = image.sample_rows().gather(|window| usable.exposed(window), workspace, brightest);
     let median = kth_smallest(values, median_rank(values.len()));
     Usable::below(median.map_or(saturation, |median| saturation.min(MANY_TIMES * median)))
 }

@@ -1,6 +1,6 @@
 //! Numbers of every inlier, written into the caller's rows.
 
-use crate::picture::{Image, Window, for_each_bit, span};
+use crate::picture::{self, Image, Window, for_each_bit};
 use core::fmt;
 
 /// The output buffer ends before the last row, or its rows are shorter than those of the picture.
@@ -30,20 +30,13 @@ pub(super) fn write<const N: usize>(
     out: &mut [f32],
     row_stride: usize,
 ) -> Result<(), TooShort> {
-    let need = span(image.width(), image.height(), N, row_stride).map_err(|_| TooShort)?;
-    if out.len() < need {
-        return Err(TooShort);
-    }
-    image.for_each_window(|window| {
-        let start = window.y * row_stride + window.x * N;
-        let out = out.get_mut(start..start + window.len * N).unwrap_or_default();
-        out.fill(nothing);
-        let (out, _) = out.as_chunks_mut::<N>();
+    let written = picture::rows::write(image, out, row_stride, |window, out| {
+        out.fill([nothing; N]);
         for_each_bit(inliers(window), |i| {
             if let Some(slot) = out.get_mut(i) {
                 *slot = value(window.pixel(i));
             }
         });
     });
-    Ok(())
+    written.map_err(|_| TooShort)
 }

@@ -6,7 +6,7 @@
 
 use crate::color::ellipsoid::{Coefficients, quadratic_form};
 use crate::math::select::{kth_smallest, median_rank};
-use crate::picture::{Image, Usable, for_each_bit, span};
+use crate::picture::{self, Image, Usable, for_each_bit, span};
 use core::fmt;
 use libm::{expf, logf};
 
@@ -65,7 +65,7 @@ pub fn albedo(
     workspace: &mut [f32],
 ) -> Result<(), AlbedoError> {
     let (width, height) = (image.width(), image.height());
-    fits(out, image, 1, row_stride)?;
+    fits(out, image, row_stride)?;
     let workspace =
         workspace.get_mut(..workspace_len(width, height)).ok_or(AlbedoError::WorkspaceTooShort)?;
     let (logarithms, rest) = workspace.split_at_mut_checked(width * height).unwrap_or_default();
@@ -194,15 +194,12 @@ pub fn divide(
     pixels: &mut [f32],
     row_stride: usize,
 ) -> Result<usize, AlbedoError> {
-    fits(albedo, image, 1, albedo_stride)?;
-    fits(pixels, image, 3, row_stride)?;
+    fits(albedo, image, albedo_stride)?;
     let mut count = 0;
-    image.for_each_window(|window| {
+    let written = picture::rows::write(image, pixels, row_stride, |window, out| {
         let bits = usable.bits(window);
         let own = albedo.get(window.y * albedo_stride + window.x..).unwrap_or_default();
-        let out = pixels.get_mut(window.y * row_stride + 3 * window.x..).unwrap_or_default();
-        let places = own.iter().zip(out.as_chunks_mut::<3>().0);
-        for (i, (&albedo, slot)) in places.take(window.len).enumerate() {
+        for (i, (&albedo, slot)) in own.iter().zip(out).enumerate() {
             let even = window.pixel(i).map(|value| value / albedo);
             let is_finite = albedo.is_finite() && even.iter().all(|value| value.is_finite());
             let has_value = bits >> i & 1 == 1 && albedo > 0.0 && is_finite;
@@ -210,11 +207,12 @@ pub fn divide(
             *slot = if has_value { even } else { [f32::NAN; 3] };
         }
     });
+    written.map_err(|_| AlbedoError::Rows)?;
     Ok(count)
 }
 
-/// Whether rows of so many values a pixel fit.
-fn fits(rows: &[f32], image: &Image, values: usize, stride: usize) -> Result<(), AlbedoError> {
-    let need = span(image.width(), image.height(), values, stride);
+/// Whether rows of a number a pixel fit.
+fn fits(rows: &[f32], image: &Image, stride: usize) -> Result<(), AlbedoError> {
+    let need = span(image.width(), image.height(), 1, stride);
     if need.is_ok_and(|need| rows.len() >= need) { Ok(()) } else { Err(AlbedoError::Rows) }
 }

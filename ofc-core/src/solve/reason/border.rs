@@ -58,7 +58,7 @@ impl Background {
         noise: f64,
         workspace: &mut [f32],
     ) -> Option<Self> {
-        let image = &image.rows_apart(image.sample_step());
+        let image = &image.sample_rows();
         let mut color = [0.0; 3];
         for (channel, slot) in color.iter_mut().enumerate() {
             let mut count = 0;

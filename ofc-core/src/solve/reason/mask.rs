@@ -37,7 +37,7 @@ pub(super) fn inverted(
 
 /// The share of the pixels in the first and the last column that the mask leaves.
 fn share_of_frame(image: &Image) -> f64 {
-    let image = image.rows_apart(image.sample_step());
+    let image = image.sample_rows();
     let (mut left, mut count) = (0, 0);
     let last = image.width().saturating_sub(1);
     image.for_each_window(|window| {
