@@ -43,3 +43,19 @@ def test_a_refusal_says_why_and_leaves_nothing(tmp_path: Path) -> None:
     assert "try:" in done.stderr
     assert not out.exists()
     assert run(tmp_path / "no.png").returncode != 0
+
+
+def test_what_cannot_be_written_is_an_error(scene: ofc.Rendering, tmp_path: Path) -> None:
+    photo = tmp_path / "photo.png"
+    cv2.imwrite(str(photo), np.ascontiguousarray(scene.pixels[..., ::-1], np.uint8))
+    full = tmp_path / "full"
+    full.mkdir()
+    (full / "depth.tiff").symlink_to("/dev/full")
+    in_the_way = tmp_path / "way"
+    (in_the_way / "normals.png").mkdir(parents=True)
+    for out in (full, in_the_way, photo):
+        done = run(photo, "--out", out)
+        assert done.returncode == 1, out
+        assert "wrote" not in done.stdout
+        assert "Traceback" not in done.stderr
+    assert "Traceback" not in run(photo, "--out", tmp_path / "out", "--pixel-pitch", "nan").stderr

@@ -60,6 +60,14 @@ def _read(path: str, flags: int) -> npt.NDArray[np.uint8 | np.uint16 | np.float3
     return np.asarray(image)
 
 
+def _write(path: Path, image: npt.NDArray[np.uint8 | np.float32]) -> None:
+    """Encodes first: what cannot be written whole is an OSError, where imwrite() may say nothing."""
+    done, encoded = cv2.imencode(path.suffix, image)
+    if not done:
+        raise OSError(f"{path} cannot be encoded")
+    path.write_bytes(encoded.tobytes())
+
+
 def _solve(options: argparse.Namespace) -> Solution | Relief:
     photo = _read(options.image, cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH)
     mask = _read(options.mask, cv2.IMREAD_GRAYSCALE) if options.mask else None
@@ -97,6 +105,16 @@ def main() -> int:
     except ValueError as error:
         print(f"{options.image}: {error}", file=sys.stderr)
         return 2
+    try:
+        _report(found, options)
+    except (OSError, ValueError) as error:
+        print(f"{options.out}: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _report(found: Solution | Relief, options: argparse.Namespace) -> None:
+    """Says and writes what was found."""
     options.out.mkdir(parents=True, exist_ok=True)
     normals = found.normals()
     where = found.inliers if isinstance(found, Solution) else None
@@ -107,18 +125,17 @@ def main() -> int:
     lines = [*found.lines(), ("1 sigma", f"{_median(sigma):.2f} degrees at half of the normals"), *depth.lines()]
     for label, text in lines:
         print(f"{label:<10} {text}")
-    cv2.imwrite(str(options.out / "normals.png"), normal_map(normals)[..., ::-1])
-    cv2.imwrite(str(options.out / "normals.tiff"), normals[..., ::-1])
-    cv2.imwrite(str(options.out / "uncertainty.tiff"), sigma)
-    cv2.imwrite(str(options.out / "depth.tiff"), depth.depth)
+    _write(options.out / "normals.png", normal_map(normals)[..., ::-1])
+    _write(options.out / "normals.tiff", normals[..., ::-1])
+    _write(options.out / "uncertainty.tiff", sigma)
+    _write(options.out / "depth.tiff", depth.depth)
     report = dict(lines) | {"version": __version__, "median_uncertainty_deg": _number(_median(sigma))}
     (options.out / "report.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
     try:
         found.plot().savefig(options.out / "overview.png", dpi=120)
     except ImportError:
         print("no overview.png: pip install matplotlib")
-    print(f"wrote {options.out.resolve()}")
-    return 0
+    print(f"wrote {options.out.resolve()}", flush=True)
 
 
 def _uncertainty(found: Solution | Relief, known: npt.NDArray[np.bool_]) -> npt.NDArray[np.float32]:
