@@ -24,9 +24,11 @@ mod distance;
 mod duals;
 mod faces;
 mod finish;
+mod half;
 mod histogram;
 mod lights;
 mod map;
+mod model;
 mod parameters;
 mod pixels;
 mod rim;
@@ -43,7 +45,7 @@ pub use class::{
 pub use parameters::{Completion, CompletionError, CompletionParams, DualSource, Light, Outputs};
 
 use super::depth;
-use super::uncertainty::{Sources, Uncertainty};
+use super::uncertainty::Sources;
 use crate::math::arena::{Arena, Need};
 use crate::math::mat3;
 use crate::picture::{Image, Usable};
@@ -52,15 +54,14 @@ use faces::Means;
 use libm::sqrtf;
 use lights::Shadow;
 use map::{Map, Vectors};
+use model::Model;
 use state::{Known, State};
 use two::Fold;
-use vector::{form, scale, single, single_matrix, trace, unit};
+use vector::{apply, form, scale, single, single_matrix, trace, unit};
 
 /// Raw normals of two lights are means of 3 x 3 pixels: their noise is that of a pixel times this, as neighbors at the border of a
 /// shadow are fewer.
 const NOISE_OF_MEANS: f32 = 1.2 / 3.0;
-/// Neighbors are not quite one normal.
-const ROUGHNESS: f32 = 0.012;
 
 /// What [`complete`] needs as workspace for a picture of this size; `None` if there is no such picture.
 #[must_use]
@@ -126,7 +127,8 @@ fn run(
     let [[xx, ..], [_, yy, _], [.., zz]] = sources.rotation;
     let orientation_variance = (xx + yy + zz) as f32;
     let noise = covariance(&root);
-    let of_means = covariance_of_means(&noise);
+    let model = Model::new(sources, &noise);
+    let of_means = noise.map(|row| scale(row, NOISE_OF_MEANS * NOISE_OF_MEANS));
     // Raw normals are in the integrator's memory until all that is read from them is written.
     let pixels = state.size[0] * state.size[1];
     let (raw, room) = state.singles.split_at_mut_checked(3 * pixels).unwrap_or_default();
@@ -180,8 +182,8 @@ fn run(
     let distances = state.integers.get_mut(..pixels).unwrap_or_default();
     let rim = rim::mark(&mut state.classes, &state.normals, distances);
     let depth = choose::choose(state, &known, rim)?;
-    let border_gap = finish::finish(state, &known, orientation_variance);
-    angles(state, image, sources);
+    let border_gap = finish::finish(state, &known, &duals, &model);
+    angles(state, image, &single_matrix(&sources.f_inverse), &model);
     for y in 0..state.size[1] {
         state.depth.row_mut(y).iter_mut().for_each(|z| *z = (f64::from(*z) * params.pixel_pitch) as f32);
     }
@@ -215,33 +217,19 @@ fn covariance(root: &vector::Matrix) -> vector::Matrix {
     root.map(|a| root.map(|b| vector::dot(a, b)))
 }
 
-fn covariance_of_means(noise: &vector::Matrix) -> vector::Matrix {
-    let mut of_means = noise.map(|row| scale(row, NOISE_OF_MEANS * NOISE_OF_MEANS));
-    for (i, row) in of_means.iter_mut().enumerate() {
-        if let Some(entry) = row.get_mut(i) {
-            *entry += ROUGHNESS * ROUGHNESS;
-        }
-    }
-    of_means
-}
-
 /// The angles of pixels that see three lights.
-fn angles(state: &mut State, image: &Image, sources: &Sources) {
-    let uncertainty = Uncertainty::new(sources);
+fn angles(state: &mut State, image: &Image, f_inverse: &vector::Matrix, model: &Model) {
     image.for_each_window(|window| {
-        let row = state.classes.row(window.y);
-        let angles = state.weights.row_mut(window.y);
-        for i in 0..window.len {
-            let (Some(&byte), Some(angle)) = (row.get(window.x + i), angles.get_mut(window.x + i)) else {
-                return;
-            };
-            if matches!(class(byte), THREE_LIGHTS | REJECTED) {
-                let color = window.pixel(i);
-                *angle = uncertainty.angle(color) as f32;
-                if class(byte) == REJECTED {
-                    let v = mat3::apply(&sources.f_inverse, color.map(f64::from));
-                    *angle = angle.max(three::misfit(single(v)));
+        let row = state.classes.row(window.y).iter().zip(state.normals.row(window.y));
+        let row = row.zip(state.weights.row_mut(window.y)).skip(window.x);
+        for (i, ((&byte, &n), angle)) in row.take(window.len).enumerate() {
+            match class(byte) {
+                THREE_LIGHTS => *angle = model.of_three(n),
+                REJECTED => {
+                    let misfit = three::misfit(apply(f_inverse, window.pixel(i)));
+                    *angle = model.of_three(n).max(misfit);
                 }
+                _ => {}
             }
         }
     });

@@ -6,6 +6,7 @@
 use super::attached::hidden;
 use super::boxes;
 use super::class::{INTERPOLATED, NOTE, ONE_LIGHT, TWO_LIGHTS, class, single_light};
+use super::half;
 use super::rim::outward;
 use super::slopes;
 use super::state::{Known, State};
@@ -14,10 +15,12 @@ use super::vector::{Vector, ZERO, add, distance_squared, scale, unit};
 use crate::surface::depth::{DepthError, DepthResult, Method};
 use libm::sqrtf;
 
-/// Times that normals are chosen.
-const ROUNDS: u32 = 6;
-/// The surface says its part of the choice half as loud in so many rounds.
+/// Normals are chosen so many times before the last one.
+const LAST_ROUND: u32 = 7;
+/// The surface says its part of the choice half as loud in the first ones.
 const CAREFUL_ROUNDS: u32 = 2;
+/// The rounds before this one are made with the first surface.
+const EARLY_ROUNDS: u32 = 4;
 /// What the surface so far may be off by, as a chord.
 const SURFACE_NOISE: f32 = 0.25;
 /// No pixel of the surface says more than this.
@@ -25,14 +28,10 @@ const MOST: f32 = 10.0;
 /// An image that faces away is that much less likely.
 const LEAST_N3: f32 = 0.03;
 const FACING_AWAY: f32 = 2.0;
-/// The surface's part is the mean over `2 RADIUS + 1` pixels a side.
-const RADIUS: usize = 3;
 /// An image this many times as likely as the other, as a logarithm, has its whole weight.
 const CERTAIN: f32 = 4.0;
 /// The part of its weight that any has.
 const LEAST_PART: f32 = 0.05;
-/// The smoothing of the surface, as a radius in pixels.
-const SMOOTHING: usize = 2;
 /// How much turning to hidden lights costs, at first and later.
 const STRICT: f32 = 4.0;
 const LENIENT: f32 = 1.0;
@@ -59,64 +58,102 @@ pub(super) fn weight(angle: f32, [.., n3]: Vector) -> f32 {
     (sure * sure * facing * facing).clamp(1e-3, 16.0)
 }
 
+/// What depends on the size of a pixel.
+#[derive(Clone, Copy)]
+struct Scale {
+    /// The smoothing of the surface, as a radius in pixels.
+    smoothing: usize,
+    /// The surface's part is the mean over `2 radius + 1` pixels a side.
+    radius: usize,
+}
+
+const WHOLE: Scale = Scale { smoothing: 2, radius: 3 };
+const HALF: Scale = Scale { smoothing: 1, radius: 1 };
+const QUARTER: Scale = Scale { smoothing: 1, radius: 1 };
+
 /// Leaves the chosen normals in the state, the surface that they make, and in its ratios how clear each choice between images was.
+///
+/// From the coarse to the fine: the first rounds are made at a quarter of the resolution, the next ones at half of it, as far as the
+/// picture is large enough.
 pub(super) fn choose(state: &mut State, known: &Known, rim: Option<f32>) -> Result<DepthResult, DepthError> {
+    let coarse = half::surface(state, |half| {
+        half::surface(half, |quarter| first(quarter, known, rim, QUARTER))
+            .unwrap_or_else(|| first(half, known, rim, HALF))?;
+        rounds(half, known, HALF)
+    });
+    coarse.unwrap_or_else(|| {
+        first(state, known, rim, WHOLE)?;
+        rounds(state, known, WHOLE)
+    })?;
+    round(state, known, WHOLE, LAST_ROUND)
+}
+
+/// The first surface, and the early rounds.
+fn first(state: &mut State, known: &Known, rim: Option<f32>, scale: Scale) -> Result<(), DepthError> {
     begin(state, known, rim);
-    let mut result = state.integrate(Method::Coupled, FIRST_TOLERANCE);
-    if result == Err(DepthError::Empty) {
+    match state.integrate(Method::Coupled, FIRST_TOLERANCE) {
         // No color says anything: the flattest surface there is.
-        state.flatten();
+        Err(DepthError::Empty) => state.flatten(),
+        other => drop(other?),
     }
-    for round in 0..ROUNDS {
-        let loudness = if round < CAREFUL_ROUNDS { 0.5 } else { 1.0 };
-        let is_last = round + 1 == ROUNDS;
-        let [p, q, votes, between] = State::planes(state.singles, state.size);
-        slopes::of(&state.depth, &state.classes, SMOOTHING, [&mut *p, &mut *q, &mut *votes, &mut *between]);
-        // What pixels say themselves, and what those around them say, go through the weights.
-        for light in 0..3 {
-            let Some(Some(fold)) = known.folds.get(light) else { continue };
-            let ours = |byte: u8| class(byte) == TWO_LIGHTS && single_light(byte) == light;
-            let width = state.size[0].max(1);
-            for (y, row) in votes.chunks_exact_mut(width).enumerate() {
-                let pixels = state.classes.row(y).iter().zip(state.normals.row(y));
-                for (x, (vote, (&byte, &n))) in row.iter_mut().zip(pixels).enumerate() {
-                    *vote = 0.0;
-                    if ours(byte) {
-                        let guess = normal_at(p, q, width, [x, y]);
-                        let [plus, minus] = fold.both(n).map(|image| cost(image, guess));
-                        let noise = 2.0 * SURFACE_NOISE * SURFACE_NOISE;
-                        *vote = ((minus - plus) / noise).clamp(-MOST, MOST);
-                    }
-                }
-            }
-            boxes::sums(votes, between, width, RADIUS);
-            let area = (2 * RADIUS + 1) * (2 * RADIUS + 1);
-            for (y, row) in votes.chunks_exact(width).enumerate() {
-                let ratios = state.ratios.get_mut(y * width..(y + 1) * width).unwrap_or_default();
-                let pixels = state.classes.row(y).iter().zip(state.normals.row_mut(y));
-                let outputs = state.weights.row_mut(y).iter_mut().zip(ratios);
-                for (((&byte, n), (weight, ratio)), &votes) in pixels.zip(outputs).zip(row) {
-                    if !ours(byte) {
-                        continue;
-                    }
-                    let said = *ratio + loudness * votes / area as f32;
-                    let [plus, minus] = fold.both(*n);
-                    *n = two::facing(said, plus, minus);
-                    let angle = sqrtf(fold.variance(*n));
-                    let part = (said.abs() / CERTAIN).clamp(LEAST_PART, 1.0);
-                    *weight = self::weight(angle, *n).clamp(0.01, 1.0) * part;
-                    if is_last {
-                        *ratio = said;
-                    }
+    (0..EARLY_ROUNDS).try_for_each(|number| round(state, known, scale, number).map(drop))
+}
+
+/// The rounds between those and the last one.
+fn rounds(state: &mut State, known: &Known, scale: Scale) -> Result<(), DepthError> {
+    (EARLY_ROUNDS..LAST_ROUND).try_for_each(|number| round(state, known, scale, number).map(drop))
+}
+
+/// Chooses by the surface so far, and integrates what is chosen.
+fn round(state: &mut State, known: &Known, scale: Scale, round: u32) -> Result<DepthResult, DepthError> {
+    let loudness = if round < CAREFUL_ROUNDS { 0.5 } else { 1.0 };
+    let is_last = round == LAST_ROUND;
+    let [p, q, votes, between] = State::planes(state.singles, state.size);
+    slopes::of(&state.depth, &state.classes, scale.smoothing, [&mut *p, &mut *q, &mut *votes, &mut *between]);
+    // What pixels say themselves, and what those around them say, go through the weights.
+    for light in 0..3 {
+        let Some(Some(fold)) = known.folds.get(light) else { continue };
+        let ours = |byte: u8| class(byte) == TWO_LIGHTS && single_light(byte) == light;
+        let width = state.size[0].max(1);
+        for (y, row) in votes.chunks_exact_mut(width).enumerate() {
+            let pixels = state.classes.row(y).iter().zip(state.normals.row(y));
+            for (x, (vote, (&byte, &n))) in row.iter_mut().zip(pixels).enumerate() {
+                *vote = 0.0;
+                if ours(byte) {
+                    let guess = normal_at(p, q, width, [x, y]);
+                    let [plus, minus] = fold.both(n).map(|image| cost(image, guess));
+                    let noise = 2.0 * SURFACE_NOISE * SURFACE_NOISE;
+                    *vote = ((minus - plus) / noise).clamp(-MOST, MOST);
                 }
             }
         }
-        let strictness = if 2 * round < ROUNDS { STRICT } else { LENIENT };
-        guess_others(state, known, strictness);
-        let tolerance = if is_last { FINAL_TOLERANCE } else { TOLERANCE };
-        result = state.integrate(Method::Poisson, tolerance);
+        boxes::sums(votes, between, width, scale.radius);
+        let side = 2 * scale.radius + 1;
+        let share = loudness / (side * side) as f32;
+        for (y, row) in votes.chunks_exact(width).enumerate() {
+            let ratios = state.ratios.get_mut(y * width..(y + 1) * width).unwrap_or_default();
+            let pixels = state.classes.row(y).iter().zip(state.normals.row_mut(y));
+            let outputs = state.weights.row_mut(y).iter_mut().zip(ratios);
+            for (((&byte, n), (weight, ratio)), &votes) in pixels.zip(outputs).zip(row) {
+                if !ours(byte) {
+                    continue;
+                }
+                let said = *ratio + share * votes;
+                let [plus, minus] = fold.both(*n);
+                *n = two::facing(said, plus, minus);
+                let angle = sqrtf(fold.variance(*n));
+                let part = (said.abs() / CERTAIN).clamp(LEAST_PART, 1.0);
+                *weight = self::weight(angle, *n).clamp(0.01, 1.0) * part;
+                if is_last {
+                    *ratio = said;
+                }
+            }
+        }
     }
-    result
+    let strictness = if 2 * round <= LAST_ROUND { STRICT } else { LENIENT };
+    guess_others(state, known, strictness);
+    let tolerance = if is_last { FINAL_TOLERANCE } else { TOLERANCE };
+    state.integrate(Method::Poisson, tolerance)
 }
 
 /// How badly an image agrees with the surface so far.

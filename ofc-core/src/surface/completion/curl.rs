@@ -25,6 +25,9 @@ const EXCESS: f32 = 1.4;
 
 /// The windows' radii and how many independent differences the mean over each is worth.
 const WINDOWS: [(usize, f32); 3] = [(3, 2.0), (7, 4.0), (15, 6.0)];
+/// What smaller windows have decided by so much, larger ones are not asked about: images change at folds, and what is true of most
+/// of a window may be false at its center.
+const DECIDED: f32 = 6.0;
 /// The most that all windows together say.
 const CERTAIN: f32 = 12.0;
 
@@ -103,7 +106,8 @@ pub(super) fn gather(ratios: &mut [f32], classes: &Map<u8>, [sum, support, total
             boxes::sums(sum, between, width, radius);
             boxes::sums(support, between, width, radius);
             for ((total, sum), support) in total.iter_mut().zip(&*sum).zip(&*support) {
-                *total += worth * sum / support.max(1.0);
+                let open = (1.0 - total.abs() / DECIDED).max(0.0);
+                *total += open * worth * sum / support.max(1.0);
             }
         }
         if !any {

@@ -24,6 +24,8 @@ const SAMPLE: usize = 3000;
 const RADIUS: usize = 2;
 /// The noise of such a mean is that of a pixel, divided by this: neighbors share some.
 const AVERAGING: f32 = 3.5;
+/// Of so many means one is looked at before all are.
+const GLANCE: usize = 4;
 /// Planes through two means that are tried for each face.
 const TRIALS: usize = 1500;
 /// Means within this many deviations of the noise lie in the plane.
@@ -246,11 +248,15 @@ impl Search<'_> {
             let [a, b] = pair.map(|i| self.colors.get(i as usize).copied().unwrap_or(ZERO));
             let Some(normal) = self.inward(cross(a, b)) else { continue };
             let most = best.map_or(0.0, |(layers, _)| layers.gain());
+            let Some(glance) = self.glance(normal) else { continue };
+            if glance <= 0.25 * most {
+                continue;
+            }
             let Some(layers) = self.layers(normal, self.live, MAX_BEYOND_AT_FIRST) else { continue };
             if layers.gain() <= 0.5 * most {
                 continue;
             }
-            if let Some((layers, normal)) = self.settled(normal)
+            if let Some((layers, normal)) = self.settled(normal, 0.7 * most)
                 && layers.gain() > most
             {
                 best = Some((layers, normal));
@@ -259,10 +265,13 @@ impl Search<'_> {
         best
     }
 
-    /// The plane fitted to the means near it, if few are on its wrong side.
-    fn settled(&self, normal: Vector) -> Option<(Layers, Vector)> {
+    /// The plane fitted to the means near it, if few are on its wrong side and its gain after one round is above this.
+    fn settled(&self, normal: Vector, least: f32) -> Option<(Layers, Vector)> {
         let mut normal = normal;
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
+            if round == 1 && self.layers(normal, self.live, 1.0)?.gain() <= least {
+                return None;
+            }
             let near = NEAR * self.deviation(normal);
             let mut moments = SecondMoments::default();
             for &v in self.colors.iter().take(self.live).filter(|v| dot(normal, **v).abs() <= near) {
@@ -285,27 +294,44 @@ impl Search<'_> {
         Some(scale(direction, sign / length))
     }
 
+    /// The gain of a plane as one of [`GLANCE`] live means has it, `None` where far too many are beyond it.
+    fn glance(&self, normal: Vector) -> Option<f32> {
+        let (groups, _) = self.colors.get(..self.live)?.as_chunks::<GLANCE>();
+        let some = groups.iter().filter_map(|group| group.first());
+        let limit = 2.0 * MAX_BEYOND_AT_FIRST * groups.len() as f32 + 3.0;
+        let layers = layers(some, normal, self.deviation(normal), limit)?;
+        Some(GLANCE as f32 * layers.gain())
+    }
+
     /// How the first `count` means lie about a plane; `None` where more than this share are beyond it.
     fn layers(&self, normal: Vector, count: usize, share: f32) -> Option<Layers> {
-        let deviation = self.deviation(normal);
-        let limit = share * count as f32;
-        let mut beyond = 0.0;
-        let mut layers = Layers::default();
-        for &v in self.colors.iter().take(count) {
-            let distance = dot(normal, v);
-            if distance.abs() <= NEAR * deviation {
-                layers.near += 1.0;
-            } else if distance > 0.0 && distance <= BESIDE * deviation {
-                layers.beside += 1.0;
-            } else if distance < -BEYOND * deviation {
-                beyond += 1.0;
-                if beyond > limit {
-                    return None;
-                }
+        layers(self.colors.iter().take(count), normal, self.deviation(normal), share * count as f32)
+    }
+}
+
+/// How means lie about a plane; `None` where more than `limit` are beyond it.
+fn layers<'a>(
+    means: impl Iterator<Item = &'a Vector>,
+    normal: Vector,
+    deviation: f32,
+    limit: f32,
+) -> Option<Layers> {
+    let mut beyond = 0.0;
+    let mut layers = Layers::default();
+    for &v in means {
+        let distance = dot(normal, v);
+        if distance.abs() <= NEAR * deviation {
+            layers.near += 1.0;
+        } else if distance > 0.0 && distance <= BESIDE * deviation {
+            layers.beside += 1.0;
+        } else if distance < -BEYOND * deviation {
+            beyond += 1.0;
+            if beyond > limit {
+                return None;
             }
         }
-        Some(layers)
     }
+    Some(layers)
 }
 
 #[cfg(test)]

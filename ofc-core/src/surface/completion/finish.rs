@@ -6,8 +6,11 @@ use super::class::{
     DOUBTFUL, INTERPOLATED, NOTE, ONE_LIGHT, REJECTED, THREE_LIGHTS, TWO_LIGHTS, class, single_light,
 };
 use super::distance::{self, FAR, STEP};
+use super::duals::Duals;
 use super::histogram::Histogram;
 use super::map::{row_of, row_of_mut};
+use super::model::Model;
+use super::parameters::DualSource;
 use super::slopes;
 use super::state::{Known, State};
 use super::vector::{Vector, ZERO, distance_squared};
@@ -20,8 +23,11 @@ const SPAN: usize = 4;
 const FEWEST_PAIRS: u32 = 40;
 /// The logarithm of how many times as likely an image is than its mirror image, below which that has a probability above 0.1.
 const DOUBT: f32 = 2.2;
-/// Of the squared distance between normal and surface around a pixel, what counts as its variance.
-const GAP: f32 = 0.7;
+/// Normals that are so far from those of the surface around a pixel, as a chord, are not those of one surface: an image is wrong
+/// there or nearby.
+const BENT: f32 = 0.1;
+/// Of the angle between normals across the borders of shadows, what an error of a dual vector that was searched for explains.
+const SEARCHED: f32 = 0.5;
 /// From the mean of two variances to the square of the angle below which 68 % of errors lie.
 const TO_ONE_SIGMA: f32 = 1.15;
 /// Uncertainty of guesses in degrees, and how much it grows with each pixel's distance from what is known, up to so many pixels.
@@ -32,7 +38,7 @@ const FARTHEST: f32 = 25.0;
 
 /// Chooses normals of one light and of none by the surface of the state, and writes the angles of all but those of three lights,
 /// which the caller knows. Returns by how much normals differ across the borders of shadows, as an angle in radians.
-pub(super) fn finish(state: &mut State, known: &Known, orientation_variance: f32) -> f32 {
+pub(super) fn finish(state: &mut State, known: &Known, duals: &Duals, model: &Model) -> f32 {
     let [width, height] = state.size;
     let step = width.max(1);
     let [p, q, gaps, between] = State::planes(state.singles, state.size);
@@ -83,10 +89,16 @@ pub(super) fn finish(state: &mut State, known: &Known, orientation_variance: f32
                     let n = state.normals.at(x, y);
                     let fold = known.folds.get(single_light(byte)).copied().flatten();
                     let own = fold.map_or(0.0, |fold| fold.variance(n));
-                    let gap = GAP * at(gaps) / at(count).max(1.0);
-                    let square = TO_ONE_SIGMA * (own + orientation_variance) + gap + across * across;
+                    let gap = at(gaps) / at(count).max(1.0);
+                    let shared = model.shared(n);
+                    let is_searched = duals
+                        .get(single_light(byte))
+                        .is_some_and(|(_, source)| *source == DualSource::Search);
+                    let of_dual = if is_searched { SEARCHED * across } else { 0.0 };
+                    let square = shared * shared + TO_ONE_SIGMA * own + gap + of_dual * of_dual;
                     state.weights.set(x, y, sqrtf(square).min(PI));
-                    let is_doubtful = state.ratios.get(i).is_some_and(|ratio| ratio.abs() < DOUBT);
+                    let is_doubtful =
+                        gap > BENT * BENT || state.ratios.get(i).is_some_and(|ratio| ratio.abs() < DOUBT);
                     state.classes.set(x, y, if is_doubtful { byte | DOUBTFUL } else { byte });
                 }
                 ONE_LIGHT => {

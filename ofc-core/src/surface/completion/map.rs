@@ -4,13 +4,13 @@ use super::vector::{Vector, ZERO};
 use crate::picture::span;
 
 /// Row `y` of numbers without gaps, none where there is none. (Two `chunks_exact` side by side keep a division that can fail.)
-pub(super) fn row_of(numbers: &[f32], width: usize, y: usize) -> &[f32] {
+pub(super) fn row_of<T>(numbers: &[T], width: usize, y: usize) -> &[T] {
     let start = y.wrapping_mul(width);
     numbers.get(start..start.wrapping_add(width)).unwrap_or_default()
 }
 
 /// The same, to be written.
-pub(super) fn row_of_mut(numbers: &mut [f32], width: usize, y: usize) -> &mut [f32] {
+pub(super) fn row_of_mut<T>(numbers: &mut [T], width: usize, y: usize) -> &mut [T] {
     let start = y.wrapping_mul(width);
     numbers.get_mut(start..start.wrapping_add(width)).unwrap_or_default()
 }

@@ -56,6 +56,19 @@ pub(super) fn normal(v: Vector, mean: Vector, noise: &Matrix) -> Option<Normal> 
     (z > 0.0).then_some(Normal { n, fits, misfit: if fits { 0.0 } else { misfit(v) } })
 }
 
+/// The covariance of the noise that is left when a raw normal near `n` was moved back to the unit sphere along its noise.
+pub(super) fn left(noise: &Matrix, n: Vector) -> Matrix {
+    let along = apply(noise, n);
+    let scale = 1.0 / dot(along, n).max(1e-18);
+    let mut left = *noise;
+    for (row, a) in left.iter_mut().zip(along) {
+        for (entry, b) in row.iter_mut().zip(along) {
+            *entry -= scale * a * b;
+        }
+    }
+    left
+}
+
 /// The angle in radians that the misfit of a rejected pixel stands for.
 pub(super) fn misfit(v: Vector) -> f32 {
     MISFIT * (length(v) - 1.0).abs()

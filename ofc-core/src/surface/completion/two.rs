@@ -8,7 +8,7 @@ use super::vector::{Matrix, Vector, add, apply, dot, form, length, scale, trace,
 use libm::sqrtf;
 
 /// A part that is longer than 1 by this much, or by so many deviations of its noise, is no pixel of two lights.
-const TOO_LONG: f32 = 0.15;
+const TOO_LONG: f32 = 0.2;
 const TOO_LONG_BY_NOISE: f32 = 6.0;
 
 /// What the direction of a dual vector makes of raw normals and their noise.
