@@ -285,7 +285,8 @@ size_t ofc_surface_workspace_size(int32_t width, int32_t height);
 /// @param classes_stride_bytes  Bytes from one row to the next.
 /// @param result  Output: the lights, and how it went.
 /// @return OFC_STATUS_OK; OFC_STATUS_NOT_CONVERGED, outputs written, when the depth did not reach its tolerance;
-///     OFC_STATUS_NOT_SOLVED; OFC_STATUS_NO_COVARIANCE for a solution by the direct method; OFC_STATUS_TOO_FEW_PIXELS when no pixel
+///     OFC_STATUS_NOT_SOLVED, also where the solution is that of another picture, as lit pixels that do not fit it tell;
+///     OFC_STATUS_NO_COVARIANCE for a solution by the direct method; OFC_STATUS_TOO_FEW_PIXELS when no pixel
 ///     of the mask is usable; an argument status.
 ///
 /// Stack: below 24 KiB. Reference: section 6, which leaves this open; docs/whole-surface.md.

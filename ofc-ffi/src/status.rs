@@ -222,6 +222,7 @@ refusals! {
         CompletionError::Workspace(_) => OFC_STATUS_WORKSPACE_TOO_SMALL,
         CompletionError::Output => OFC_STATUS_STRIDE_TOO_SMALL,
         CompletionError::Empty => OFC_STATUS_TOO_FEW_PIXELS,
+        CompletionError::OtherPicture => OFC_STATUS_NOT_SOLVED,
     }
     CheckError {
         CheckError::Orientation => OFC_STATUS_NOT_SOLVED,

@@ -117,6 +117,10 @@ static void bad_solutions_and_masks_refused(void **state)
     bad = solution;
     bad.orientation.f_inverse[0] = INFINITY;
     BAD_SOLUTION(OFC_STATUS_INVALID_PARAMETER);
+    /* The picture with its channels exchanged is another one. */
+    image.format = OFC_PIXEL_BGR8;
+    REFUSED(OFC_STATUS_NOT_SOLVED, out, complete(&image));
+    image = ball_image();
     static uint8_t nothing[HEIGHT][WIDTH];
     image.mask = nothing[0];
     image.mask_stride_bytes = WIDTH;

@@ -5,8 +5,8 @@ use ofc_core::picture::{Image, Order, Sample};
 use ofc_core::render::{self, Canvas, Lights, Rows, render};
 use ofc_core::solve::{Outcome, Params};
 use ofc_core::surface::completion::{
-    self, Completion, CompletionError, CompletionParams, DOUBTFUL, DualSource, INTERPOLATED, ONE_LIGHT,
-    OUTSIDE, Outputs, THREE_LIGHTS, TWO_LIGHTS, class, complete,
+    self, Completion, CompletionError, CompletionParams, DOUBTFUL, DualSource, ONE_LIGHT, OUTSIDE, Outputs,
+    THREE_LIGHTS, TWO_LIGHTS, class, complete,
 };
 use ofc_tests::depth_maps::{Relief, bust, sphere, vase};
 use ofc_tests::linear::{degrees_between, median};
@@ -250,20 +250,19 @@ fn what_cannot_be_completed_is_refused() {
 }
 
 #[test]
-fn where_no_color_says_anything_the_surface_is_a_plane() {
+fn the_solution_of_another_picture_is_refused() {
     let scene = Scene::new(sphere(64, 64, 0.9, 26.0), 0, 0.3);
-    // An eighth of the light: no pixel is near the ellipsoid.
-    let dim = Scene { pixels: scene.pixels.iter().map(|value| value / 8).collect(), ..scene };
-    let bright = Scene::new(sphere(64, 64, 0.9, 26.0), 0, 0.3);
-    let completed = completed_by(&bright.image(), &dim.image(), &CompletionParams::default()).unwrap();
-    let inside = dim.relief.mask.iter().filter(|&&inside| inside != 0).count();
-    assert_eq!(completed.found.counts[usize::from(INTERPOLATED)] as usize, inside);
-    assert!(completed.found.converged && completed.found.regions == 1);
-    for y in 0..64 {
-        for x in (0..64).filter(|x| dim.relief.mask[64 * y + x] != 0) {
-            let [n1, n2, n3] = [0, 1, 2].map(|k| completed.normals[y * (3 * 64 + GAP) + 3 * x + k]);
-            assert!(n1 == 0.0 && n2 == 0.0 && n3 == 1.0, "{n1} {n2} {n3}");
-            assert!(completed.depths[y * (64 + GAP) + x].abs() < 1e-6);
-        }
+    let params = CompletionParams::default();
+    assert!(completed(&scene.image(), &params).is_ok());
+    let other = |pixels: Vec<u8>| {
+        let (bright, other) =
+            (scene.image(), Scene { pixels, ..Scene::new(sphere(64, 64, 0.9, 26.0), 0, 0.3) });
+        completed_by(&bright, &other.image(), &params).err()
+    };
+    let dim = scene.pixels.iter().map(|value| value - value / 5).collect();
+    let exchanged = scene.pixels.chunks(3).flat_map(|color| [color[2], color[1], color[0]]).collect();
+    let under_other_lights = Scene::new(sphere(64, 64, 0.9, 26.0), 3, 0.3).pixels;
+    for pixels in [dim, exchanged, under_other_lights] {
+        assert_eq!(other(pixels), Some(CompletionError::OtherPicture));
     }
 }

@@ -25,7 +25,7 @@ use std::path::Path;
 #[test]
 fn every_error_says_what_is_wrong() {
     let color_deviations = [0.0; 3];
-    let errors: [Box<dyn Error>; 84] = [
+    let errors: [Box<dyn Error>; 85] = [
         Box::new(CheckError::Orientation),
         Box::new(CheckError::WorkspaceTooShort),
         Box::new(CheckError::NoInliers),
@@ -108,6 +108,7 @@ fn every_error_says_what_is_wrong() {
         Box::new(CompletionError::Workspace(Need::of_singles(7))),
         Box::new(CompletionError::Output),
         Box::new(CompletionError::Empty),
+        Box::new(CompletionError::OtherPicture),
         Box::new(TooShort),
         Box::new(StreamError::Fit(FitError::RankDeficient { color_deviations })),
     ];

@@ -14,6 +14,7 @@
 //! # Scratch
 //! [`need`]: what [`depth`] takes and one number more for each pixel.
 
+mod agreement;
 mod attached;
 mod boxes;
 mod choose;
@@ -62,6 +63,9 @@ use vector::{apply, form, scale, single, single_matrix, trace, unit};
 /// Raw normals of two lights are means of 3 x 3 pixels: their noise is that of a pixel times this, as neighbors at the border of a
 /// shadow are fewer.
 const NOISE_OF_MEANS: f32 = 1.2 / 3.0;
+/// Where means of 3 x 3 pixels have more noise than this, pixels that see one light are interpolated: on photographs, where most of
+/// what is taken for noise is what the model does not explain, cones are off by more than what is around.
+const MOST_NOISE_OF_ONE_LIGHT: f32 = 0.05;
 
 /// What [`complete`] needs as workspace for a picture of this size; `None` if there is no such picture.
 #[must_use]
@@ -97,6 +101,10 @@ pub fn complete(
     if usable.count(image).usable == 0 {
         return Err(CompletionError::Empty);
     }
+    let root = single_matrix(&sources.f_inverse).map(|row| scale(row, sources.noise as f32));
+    if !agreement::holds(image, usable, &single_matrix(&sources.f_inverse), &root) {
+        return Err(CompletionError::OtherPicture);
+    }
     let ratios = workspace.singles(width * height).ok_or(CompletionError::Workspace(need))?;
     let singles = workspace.singles(need.singles - width * height).ok_or(CompletionError::Workspace(need))?;
     let integers = workspace.integers(need.integers).ok_or(CompletionError::Workspace(need))?;
@@ -111,7 +119,7 @@ pub fn complete(
         singles,
         integers,
     };
-    run(&mut state, image, usable, sources, params).map_err(|_| CompletionError::Workspace(need))
+    run(&mut state, image, usable, sources, &root, params).map_err(|_| CompletionError::Workspace(need))
 }
 
 /// All steps.
@@ -120,13 +128,13 @@ fn run(
     image: &Image,
     usable: Usable,
     sources: &Sources,
+    root: &vector::Matrix,
     params: &CompletionParams,
 ) -> Result<Completion, depth::DepthError> {
     let [width, _] = state.size;
-    let root = single_matrix(&sources.f_inverse).map(|row| scale(row, sources.noise as f32));
     let [[xx, ..], [_, yy, _], [.., zz]] = sources.rotation;
     let orientation_variance = (xx + yy + zz) as f32;
-    let noise = covariance(&root);
+    let noise = covariance(root);
     let model = Model::new(sources, &noise);
     let of_means = noise.map(|row| scale(row, NOISE_OF_MEANS * NOISE_OF_MEANS));
     // Raw normals are in the integrator's memory until all that is read from them is written.
@@ -135,7 +143,7 @@ fn run(
     let Some(mut raw) = Vectors::new(raw, state.size, 3 * width) else { return Err(depth::DepthError::Size) };
     let masked =
         pixels::read(image, usable, &single_matrix(&sources.f_inverse), &mut raw, &mut state.classes);
-    let means = Means::gather(&raw, &state.classes, masked, &root, room);
+    let means = Means::gather(&raw, &state.classes, masked, root, room);
     let left = means.noise_left().clamp(1.0 / 3.0, 1.0);
     let directions = if params.channels_are_lights {
         sources.f.map(|row| Some(unit(single(row))))
@@ -162,7 +170,8 @@ fn run(
     };
     let folds = duals.map(|(dual, _)| dual.map(|dual| Fold::new(dual, &of_means)));
     let all = duals.iter().all(|(dual, _)| dual.is_some());
-    let cones = directions.map(|a| a.filter(|_| all).map(Cone::new));
+    let cones =
+        directions.map(|a| a.filter(|_| all && left * deviation < MOST_NOISE_OF_ONE_LIGHT).map(Cone::new));
     let mut known = Known { directions, folds, cones };
     pixels::classify(state.size, &known, &raw, &mut state.classes, &mut state.normals);
     curl::compare(&known.folds, deviation, &state.normals, &state.classes, state.ratios);

@@ -90,7 +90,7 @@ pub(super) fn choose(state: &mut State, known: &Known, rim: Option<f32>) -> Resu
 
 /// The first surface, and the early rounds.
 fn first(state: &mut State, known: &Known, rim: Option<f32>, scale: Scale) -> Result<(), DepthError> {
-    begin(state, known, rim);
+    begin(state, rim);
     match state.integrate(Method::Coupled, FIRST_TOLERANCE) {
         // No color says anything: the flattest surface there is.
         Err(DepthError::Empty) => state.flatten(),
@@ -171,24 +171,13 @@ fn normal_at(p: &[f32], q: &[f32], width: usize, [x, y]: [usize; 2]) -> Vector {
 }
 
 /// Weights and normals of the first surface: of what is known, and of a silhouette.
-fn begin(state: &mut State, known: &Known, rim: Option<f32>) {
+fn begin(state: &mut State, rim: Option<f32>) {
     let [width, height] = state.size;
     for y in 0..height {
         for x in 0..width {
             let byte = state.classes.at(x, y);
-            let ratio = state.ratios.get(y * width + x).copied().unwrap_or(0.0);
             match class(byte) {
-                TWO_LIGHTS => {
-                    let Some(Some(fold)) = known.folds.get(single_light(byte)) else { continue };
-                    let Some(n) = state.normals.row_mut(y).get_mut(x) else { continue };
-                    let [plus, minus] = fold.both(*n);
-                    *n = two::facing(ratio, plus, minus);
-                    let angle = sqrtf(fold.variance(*n));
-                    let is_clear = ratio.abs() > CERTAIN;
-                    let weight = if is_clear { weight(angle, *n).clamp(0.01, 1.0) } else { 0.0 };
-                    state.weights.set(x, y, weight);
-                }
-                ONE_LIGHT => state.weights.set(x, y, 0.0),
+                TWO_LIGHTS | ONE_LIGHT => state.weights.set(x, y, 0.0),
                 INTERPOLATED => {
                     state.weights.set(x, y, 0.0);
                     if let Some(cosine) = rim.filter(|_| byte & NOTE != 0) {

@@ -25,11 +25,9 @@ const EXCESS: f32 = 1.4;
 
 /// The windows' radii and how many independent differences the mean over each is worth.
 const WINDOWS: [(usize, f32); 3] = [(3, 2.0), (7, 4.0), (15, 6.0)];
-/// What smaller windows have decided by so much, larger ones are not asked about: images change at folds, and what is true of most
-/// of a window may be false at its center.
-const DECIDED: f32 = 6.0;
-/// The most that all windows together say.
-const CERTAIN: f32 = 12.0;
+/// What windows have decided by so much, larger ones are not asked about: images change at folds, and what is true of most of a window
+/// may be false at its center. Nor do all of them say more: where surfaces end or bend sharply they may be wrong together.
+const DECIDED: f32 = 3.0;
 
 /// The logarithm of how many times as likely the image on the side of e is, from the differences around each pixel alone; 0 where
 /// there is nothing to compare. `normals` are images of either sign, of means of [`SIDE`] pixels a side; `deviation` is the noise of a
@@ -117,7 +115,7 @@ pub(super) fn gather(ratios: &mut [f32], classes: &Map<u8>, [sum, support, total
             let total = row_of(total, width, y);
             for ((ratio, total), &byte) in row.iter_mut().zip(total).zip(classes.row(y)) {
                 if is_ours(byte) {
-                    *ratio = total.clamp(-CERTAIN, CERTAIN);
+                    *ratio = total.clamp(-DECIDED, DECIDED);
                 }
             }
         }

@@ -10,7 +10,7 @@
 use super::class::mean_around;
 use super::histogram::Histogram;
 use super::map::{Map, Vectors};
-use super::vector::{Matrix, Vector, ZERO, add, cross, dot, length, scale, unit};
+use super::vector::{Matrix, Vector, ZERO, add, cross, dot, length, scale, transposed, unit};
 use crate::color::second_moments::SecondMoments;
 use crate::math::mat3;
 use crate::math::rng::Rng;
@@ -149,11 +149,6 @@ fn is_whole(raw: &Vectors, classes: &Map<u8>, [x, y]: [usize; 2]) -> bool {
         let row = raw.row(y).get(left..=x + RADIUS).unwrap_or_default();
         !bytes.is_empty() && bytes.iter().zip(row).all(|(&byte, [first, ..])| byte != 0 && !first.is_nan())
     })
-}
-
-/// M^T v.
-fn transposed([a, b, c]: &Matrix, [x, y, z]: Vector) -> Vector {
-    add(add(scale(*a, x), y, *b), z, *c)
 }
 
 /// Exchanges two of the means; `swap` of slices can panic.

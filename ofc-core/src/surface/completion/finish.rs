@@ -30,8 +30,10 @@ const BENT: f32 = 0.1;
 const SEARCHED: f32 = 0.5;
 /// From the mean of two variances to the square of the angle below which 68 % of errors lie.
 const TO_ONE_SIGMA: f32 = 1.15;
-/// Uncertainty of guesses in degrees, and how much it grows with each pixel's distance from what is known, up to so many pixels.
+/// Uncertainty of guesses in degrees, or so many times the angle between normals across the borders of shadows where that is more, and
+/// how much it grows with each pixel's distance from what is known, up to so many pixels.
 const GUESS: f32 = 6.0;
+const GAPS: f32 = 2.0;
 const GROWTH_OF_ONE_LIGHT: f32 = 1.0;
 const GROWTH_OF_NOTHING: f32 = 1.5;
 const FARTHEST: f32 = 25.0;
@@ -69,6 +71,7 @@ pub(super) fn finish(state: &mut State, known: &Known, duals: &Duals, model: &Mo
     boxes::sums(gaps, between, width, 2);
     boxes::sums(p, between, width, 2);
     let across = border_gap(state);
+    let guess = GUESS.to_radians().max(GAPS * across);
     let [count, _, gaps, _] = State::planes(state.singles, state.size);
     let distances = state.integers.get_mut(..width * height).unwrap_or_default();
     for (y, row) in distances.chunks_exact_mut(step).enumerate() {
@@ -102,11 +105,11 @@ pub(super) fn finish(state: &mut State, known: &Known, duals: &Duals, model: &Mo
                     state.classes.set(x, y, if is_doubtful { byte | DOUBTFUL } else { byte });
                 }
                 ONE_LIGHT => {
-                    state.weights.set(x, y, (GUESS + GROWTH_OF_ONE_LIGHT * away).to_radians());
+                    state.weights.set(x, y, guess + (GROWTH_OF_ONE_LIGHT * away).to_radians());
                     state.classes.set(x, y, byte & !(NOTE | DOUBTFUL));
                 }
                 INTERPOLATED => {
-                    state.weights.set(x, y, (GUESS + GROWTH_OF_NOTHING * away).to_radians());
+                    state.weights.set(x, y, guess + (GROWTH_OF_NOTHING * away).to_radians());
                     state.classes.set(x, y, byte & !NOTE);
                 }
                 _ => {}

@@ -93,6 +93,8 @@ pub enum CompletionError {
     Output,
     /// No pixel of the mask is usable.
     Empty,
+    /// The solution is that of another picture: lit pixels do not have colors of its ellipsoid.
+    OtherPicture,
 }
 
 impl fmt::Display for CompletionError {
@@ -103,6 +105,7 @@ impl fmt::Display for CompletionError {
             Self::Workspace(need) => write!(f, "the workspace holds less than {} bytes", need.bytes()),
             Self::Output => f.write_str("an output ends before its last row, or its rows are too short"),
             Self::Empty => f.write_str("no pixel of the mask is usable"),
+            Self::OtherPicture => f.write_str("the solution is that of another picture"),
         }
     }
 }

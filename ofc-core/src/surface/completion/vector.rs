@@ -55,6 +55,12 @@ pub(super) fn apply([a, b, c]: &Matrix, v: Vector) -> Vector {
     [dot(*a, v), dot(*b, v), dot(*c, v)]
 }
 
+/// M^T v.
+#[inline]
+pub(super) fn transposed([a, b, c]: &Matrix, [x, y, z]: Vector) -> Vector {
+    add(add(scale(*a, x), y, *b), z, *c)
+}
+
 /// v^T M v.
 #[inline]
 pub(super) fn form(m: &Matrix, v: Vector) -> f32 {
