@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -344,3 +345,12 @@ def test_results_show_themselves(scene: ofc.Rendering) -> None:
         assert figure.axes
     assert ofc.normal_map(scene.normals)[45, 60].tolist() == pytest.approx([127, 127, 255], abs=2)
     assert (ofc.normal_map(scene.normals)[0, 0] == 0).all()
+
+
+def test_normal_maps_are_of_normals(scene: ofc.Rendering) -> None:
+    normals = scene.normals
+    assert ofc.normal_map(normals).shape == normals.shape
+    several: list[Any] = [normals[0], normals[..., :2], normals[..., 0], np.zeros((4, 5, 6, 3)), normals * 3]
+    for wrong in [*several, (normals * 100).astype(np.int32)]:
+        with pytest.raises(ValueError, match="normals"):
+            ofc.normal_map(wrong)

@@ -9,8 +9,10 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from PIL import ExifTags, Image, ImageCms
 
 import orientation_from_color as ofc
+from orientation_from_color.files import read_mask, read_picture
 
 
 def run(*arguments: object) -> subprocess.CompletedProcess[str]:
@@ -22,9 +24,10 @@ def test_a_photograph_becomes_files(scene: ofc.Rendering, tmp_path: Path) -> Non
     photo, mask, out = tmp_path / "photo.png", tmp_path / "mask.png", tmp_path / "results"
     cv2.imwrite(str(photo), np.ascontiguousarray(scene.pixels[..., ::-1], np.uint8))
     cv2.imwrite(str(mask), np.where(scene.normals[..., 2] > 0, 255, 0).astype(np.uint8))
-    done = run(photo, "--mask", mask, "--out", out, "--pixel-pitch", "0.1")
+    done = run(photo, "--mask", mask, "--out", out, "--pixel-pitch", "0.1", "--lit-only")
     assert done.returncode == 0, done.stderr
     assert "trust" in done.stdout
+    assert "120 x 90" in done.stdout
     normals = cv2.imread(str(out / "normals.tiff"), cv2.IMREAD_UNCHANGED)
     assert normals is not None
     expected = ofc.solve(scene.pixels, scene.normals[..., 2] > 0).normals()
@@ -32,6 +35,72 @@ def test_a_photograph_becomes_files(scene: ofc.Rendering, tmp_path: Path) -> Non
     for name in ("normals.png", "uncertainty.tiff", "depth.tiff", "overview.png"):
         assert cv2.imread(str(out / name), cv2.IMREAD_UNCHANGED) is not None, name
     assert json.loads((out / "report.json").read_text())["median_uncertainty_deg"] > 0
+    assert run(photo, "--mask", mask, "--out", out, "--pixel-pitch", "0.1").returncode == 0
+    depth = cv2.imread(str(out / "depth.tiff"), cv2.IMREAD_UNCHANGED)
+    inside = scene.normals[..., 2] > 0
+    assert depth is not None
+    assert np.isfinite(depth[inside]).all()
+    whole = ofc.solve(scene.pixels, inside).complete(params=ofc.SurfaceParams(pixel_pitch=0.1))
+    assert (depth[inside] == whole.depth[inside]).all()
+    assert run(tmp_path / "no.png", "--out", out).returncode == 2
+    assert not out.exists() or not list(out.iterdir()), "what an earlier run left"
+
+
+def test_files_are_read_as_they_were_meant(scene: ofc.Rendering, tmp_path: Path) -> None:
+    upright = np.ascontiguousarray(scene.pixels, np.uint8)
+    inside = scene.normals[..., 2] > 0
+    exif = Image.Exif()
+    exif[ExifTags.Base.Orientation] = 6
+    photo = tmp_path / "photo.png"
+    Image.fromarray(np.ascontiguousarray(np.rot90(upright))).save(photo, exif=exif)
+    picture = read_picture(str(photo))
+    assert (picture.pixels[..., ::-1] == upright).all()
+    Image.fromarray(np.dstack([upright, np.where(inside, 255, 0).astype(np.uint8)])).save(photo)
+    alpha = read_picture(str(photo)).mask
+    assert alpha is not None
+    assert (alpha == inside).all()
+    stored = np.rint(
+        255 * np.where(upright / 255 <= 0.0031308, 12.92 * upright / 255, 1.055 * (upright / 255) ** (1 / 2.4) - 0.055)
+    )
+    profile = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
+    Image.fromarray(stored.astype(np.uint8)).save(photo, icc_profile=profile)
+    out = tmp_path / "out"
+    for options, words in (
+        ((), "--transfer srgb undoes"),
+        (("--transfer", "linear"), ""),
+        (("--transfer", "file"), ""),
+        (("--transfer", "srgb"), ""),
+    ):
+        done = run(photo, "--out", out, *options)
+        assert done.returncode == 0, done.stderr
+        assert ("doubt" in done.stdout) == bool(words)
+        assert words in done.stdout
+    for wrong in "gamma", "gamma:0", "gamma:nan", "rec709":
+        assert run(photo, "--out", out, "--transfer", wrong).returncode == 2
+    mask = tmp_path / "mask.png"
+    cv2.imwrite(str(mask), inside.astype(np.uint16))
+    assert (read_mask(str(mask)) == inside).all()
+    for suffix in "png", "jpg":
+        whole, cut = tmp_path / f"whole.{suffix}", tmp_path / f"cut.{suffix}"
+        Image.fromarray(upright).save(whole)
+        cut.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
+        done = run(cut, "--out", out)
+        assert done.returncode == 2
+        assert "cut" in done.stderr
+        assert not out.exists() or not list(out.iterdir())
+
+
+def test_files_of_others_stay(scene: ofc.Rendering, tmp_path: Path) -> None:
+    photo, out = tmp_path / "photo.png", tmp_path / "out"
+    cv2.imwrite(str(photo), np.ascontiguousarray(scene.pixels[..., ::-1], np.uint8))
+    out.mkdir()
+    own = out / "depth.tiff"
+    own.write_bytes(b"my own")
+    done = run(photo, "--out", out)
+    assert done.returncode == 1
+    assert "depth.tiff is there" in done.stderr
+    assert own.read_bytes() == b"my own"
+    assert list(out.iterdir()) == [own]
 
 
 def test_a_refusal_says_why_and_leaves_nothing(tmp_path: Path) -> None:

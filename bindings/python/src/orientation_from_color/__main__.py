@@ -3,32 +3,49 @@
 from __future__ import annotations
 
 import argparse
-import json
+import io
 import math
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from . import __version__, integrate, normal_map, solve, solve_relief
-from .enums import Convexity, DepthMethod
+from . import __version__, integrate, linearize, normal_map, solve, solve_relief
+from .enums import Convexity, DepthMethod, Transfer
 from .errors import Error, Refused
 from .flat import flat_field
-from .params import DepthParams, LmedsParams, ReliefParams, SolveParams
+from .params import DepthParams, LmedsParams, ReliefParams, SolveParams, SurfaceParams
 from .relief import Relief
 from .solution import Solution
+from .surface import Surface
 
 try:
     import cv2
+
+    from .files import FilePicture, Results, read_mask, read_picture
 except ImportError:
-    sys.exit("files are read by OpenCV: pip install 'orientation-from-color[files,plot]'")
+    sys.exit("files are read by OpenCV and Pillow: pip install 'orientation-from-color[files,plot]'")
+
+if TYPE_CHECKING:
+    from .picture import Channels
+
+_NAMES = ("normals.png", "normals.tiff", "uncertainty.tiff", "depth.tiff", "overview.png")
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m orientation_from_color", description=__doc__)
-    parser.add_argument("image", help="color picture of 8 or 16 bits a channel, of linear values (PNG, TIFF, ...)")
-    parser.add_argument("--mask", help="gray picture, 0 where pixels are to be left out")
+    parser.add_argument("image", help="color picture of 8 or 16 bits or floats a channel (PNG, JPEG, TIFF, ...)")
+    parser.add_argument(
+        "--mask", help="picture of any depth and color, 0 where pixels are to be left out (default: the alpha channel)"
+    )
+    parser.add_argument(
+        "--transfer",
+        type=_transfer,
+        metavar="CURVE",
+        help="how the file stores light, which is undone: linear, srgb, gamma:G, or file for what it says (default: linear)",
+    )
     parser.add_argument("--background", help="picture of the same flat surface without the object: for near lights")
     parser.add_argument(
         "--model",
@@ -46,6 +63,11 @@ def _parser() -> argparse.ArgumentParser:
         default="poisson",
         help="how to span pixels without a normal: leave them out, set them flat, or bridge them",
     )
+    parser.add_argument(
+        "--lit-only",
+        action="store_true",
+        help="normals and depth of the pixels that see all lights; without it the whole surface in the mask, shadows too",
+    )
     parser.add_argument("--pixel-pitch", type=float, default=1.0, metavar="MM", help="width of a pixel on the surface")
     parser.add_argument("--seed", type=int, default=0, help="seed of the random subsets")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder to write into (default: out)")
@@ -53,33 +75,59 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _read(path: str, flags: int) -> npt.NDArray[np.uint8 | np.uint16 | np.float32]:
-    image = cv2.imread(path, flags)
-    if image is None:
-        raise SystemExit(f"cannot read {path}")
-    return np.asarray(image)
+def _transfer(text: str) -> tuple[str, float]:
+    """What --transfer says: linear, srgb, file or gamma, with its number."""
+    kind, _, number = text.partition(":")
+    gamma = float(number) if kind == "gamma" else 0.0
+    if (
+        kind not in ("linear", "srgb", "file", "gamma")
+        or (number and kind != "gamma")
+        or (kind == "gamma" and not 0.1 <= gamma <= 10)
+    ):
+        raise argparse.ArgumentTypeError(f"{text} is not linear, srgb, file or gamma:G with G from 0.1 to 10")
+    return kind, gamma
 
 
-def _write(path: Path, image: npt.NDArray[np.uint8 | np.float32]) -> None:
-    """Encodes first: what cannot be written whole is an OSError, where imwrite() may say nothing."""
-    done, encoded = cv2.imencode(path.suffix, image)
-    if not done:
-        raise OSError(f"{path} cannot be encoded")
-    path.write_bytes(encoded.tobytes())
+def _as_light(picture: FilePicture, options: argparse.Namespace) -> tuple[npt.NDArray[Any], bool, str | None]:
+    """The picture's light, whether red is first in it, and what is to be doubted of it."""
+    kind, gamma = options.transfer or ("linear", 0.0)
+    if kind == "file":
+        known = {"linear": "linear", "sRGB": "srgb"}.get(picture.says)
+        if known is None:
+            raise OSError(f"the file says {picture.says} of how it stores light: give --transfer linear, srgb or gamma:G")
+        kind = known
+    doubt = None
+    if options.transfer is None and picture.says in ("sRGB", "a curve"):
+        doubt = (
+            f"{picture.source} says that it holds {picture.says}, and it was taken for linear: --transfer srgb undoes sRGB, "
+            "--transfer linear rules it out"
+        )
+    if kind == "srgb":
+        return linearize(picture.pixels, Transfer.SRGB, channels="bgr"), True, doubt
+    if kind == "gamma":
+        return linearize(picture.pixels, Transfer.GAMMA, gamma=gamma, channels="bgr"), True, doubt
+    return picture.pixels, False, doubt
 
 
-def _solve(options: argparse.Namespace) -> Solution | Relief:
-    photo = _read(options.image, cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH)
-    mask = _read(options.mask, cv2.IMREAD_GRAYSCALE) if options.mask else None
-    below = _read(options.background, cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH) if options.background else None
+def _solve(options: argparse.Namespace) -> tuple[Solution | Relief, list[tuple[str, str]]]:
+    """What was found, and what is to be said of the file first."""
+    file = read_picture(options.image)
+    photo, is_rgb, doubt = _as_light(file, options)
+    order: Channels = "rgb" if is_rgb else "bgr"
+    said = [("picture", file.words)] + ([("doubt", doubt)] if doubt else [])
+    mask = read_mask(options.mask) if options.mask else file.mask
+    below = _as_light(read_picture(options.background), options)[0] if options.background else None
     convexity = Convexity.HOLLOW if options.hollow else Convexity.CONVEX if options.convex else Convexity.AUTO
+    # Linear light of 8 or 16 bits in floats keeps its full scale.
+    full = float(np.iinfo(file.pixels.dtype).max) if is_rgb and file.pixels.dtype.kind == "u" else 0.0
     refusal = None
     if options.model != "relief":
-        params = SolveParams(lmeds=LmedsParams(seed=options.seed), convexity=convexity)
+        params = SolveParams(lmeds=LmedsParams(seed=options.seed, saturation=full), convexity=convexity)
         try:
             if below is None:
-                return solve(photo, mask, channels="bgr", params=params)
-            return solve(flat_field(photo, below, channels="bgr").pixels, mask, params=params)
+                return solve(photo, mask, channels=order, params=params), said
+            params = SolveParams(lmeds=LmedsParams(seed=options.seed), convexity=convexity)
+            return solve(flat_field(photo, below, channels=order).pixels, mask, params=params), said
         except Refused as error:
             if options.model == "ellipsoid":
                 raise
@@ -87,7 +135,7 @@ def _solve(options: argparse.Namespace) -> Solution | Relief:
     raised = Convexity.HOLLOW if options.hollow else Convexity.AUTO
     params_of_relief = ReliefParams(seed=options.seed, ball_radius=options.ball_radius, convexity=raised)
     try:
-        return solve_relief(photo, below, mask, channels="bgr", params=params_of_relief)
+        return solve_relief(photo, below, mask, channels=order, params=params_of_relief), said
     except ValueError:
         if refusal is None:
             raise
@@ -98,44 +146,80 @@ def main() -> int:
     """Solves one photograph and writes what was found."""
     options = _parser().parse_args()
     try:
-        found = _solve(options)
+        with Results(options.out, _NAMES, (options.image, options.mask, options.background)) as results:
+            try:
+                found, said = _solve(options)
+            except OSError as error:
+                raise _UnusableError(str(error)) from None
+            _report(found, said, options, results)
+        print(f"wrote {options.out.resolve()}", flush=True)
     except Refused as error:
         print(f"refused: {error}", file=sys.stderr)
+        return 1
+    except _UnusableError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"{options.out}: {error}", file=sys.stderr)
         return 1
     except ValueError as error:
         print(f"{options.image}: {error}", file=sys.stderr)
         return 2
-    try:
-        _report(found, options)
-    except (OSError, ValueError) as error:
-        print(f"{options.out}: {error}", file=sys.stderr)
-        return 1
     return 0
 
 
-def _report(found: Solution | Relief, options: argparse.Namespace) -> None:
+class _UnusableError(Exception):
+    """A file that was given cannot be used."""
+
+
+def _whole(found: Solution | Relief, options: argparse.Namespace) -> Surface | None:
+    """The whole surface, where that is wanted and it is known how sure the orientation is."""
+    if not isinstance(found, Solution) or options.lit_only or options.integrate != "poisson" or found.picture is None:
+        return None
+    picture = found.picture
+    mask = picture.mask
+    if mask is None:
+        shown = (picture.rgb().max(axis=2) > 0).astype(np.uint8)
+        outlines, _ = cv2.findContours(shown, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        mask = cv2.drawContours(np.zeros_like(shown), outlines, -1, 255, cv2.FILLED).astype(np.uint8)
+    pixels = picture.pixels
+    order: Channels = "bgr" if picture.channels.startswith("BGR") else "rgb"
+    try:
+        return found.complete(pixels, mask, channels=order, params=SurfaceParams(pixel_pitch=options.pixel_pitch))
+    except Error:
+        return None
+
+
+def _report(found: Solution | Relief, said: list[tuple[str, str]], options: argparse.Namespace, results: Results) -> None:
     """Says and writes what was found."""
-    options.out.mkdir(parents=True, exist_ok=True)
-    normals = found.normals()
-    where = found.inliers if isinstance(found, Solution) else None
-    params = DepthParams(pixel_pitch=options.pixel_pitch, method=DepthMethod[options.integrate.upper()])
-    depth = integrate(normals, where, params=params)
-    known = (normals != 0).any(axis=-1) & np.isfinite(normals).all(axis=-1)
-    sigma = _uncertainty(found, known)
-    lines = [*found.lines(), ("1 sigma", f"{_median(sigma):.2f} degrees at half of the normals"), *depth.lines()]
+    surface = _whole(found, options)
+    if surface is not None:
+        normals, depth = surface.normals, surface.depth
+        inside = np.isfinite(depth)
+        sigma = np.where(inside, np.degrees(surface.uncertainty), np.nan).astype(np.float32)
+        rest = surface.lines()
+    else:
+        normals = found.normals()
+        where = found.inliers if isinstance(found, Solution) else None
+        params = DepthParams(pixel_pitch=options.pixel_pitch, method=DepthMethod[options.integrate.upper()])
+        integrated = integrate(normals, where, params=params)
+        depth = integrated.depth
+        sigma = _uncertainty(found, (normals != 0).any(axis=-1) & np.isfinite(normals).all(axis=-1))
+        rest = [("1 sigma", f"{_median(sigma):.2f} degrees at half of the normals"), *integrated.lines()]
+    lines = [*said, *found.lines(), *rest]
     for label, text in lines:
         print(f"{label:<10} {text}")
-    _write(options.out / "normals.png", normal_map(normals)[..., ::-1])
-    _write(options.out / "normals.tiff", normals[..., ::-1])
-    _write(options.out / "uncertainty.tiff", sigma)
-    _write(options.out / "depth.tiff", depth.depth)
-    report = dict(lines) | {"version": __version__, "median_uncertainty_deg": _number(_median(sigma))}
-    (options.out / "report.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+    results.write("normals.png", normal_map(normals)[..., ::-1])
+    results.write("normals.tiff", np.ascontiguousarray(normals[..., ::-1]))
+    results.write("uncertainty.tiff", sigma)
+    results.write("depth.tiff", depth)
     try:
-        found.plot().savefig(options.out / "overview.png", dpi=120)
+        drawn = io.BytesIO()
+        (surface or found).plot().savefig(drawn, format="png", dpi=120)
+        results.write_bytes("overview.png", drawn.getvalue())
     except ImportError:
         print("no overview.png: pip install matplotlib")
-    print(f"wrote {options.out.resolve()}", flush=True)
+    results.finish(dict(lines) | {"version": __version__, "median_uncertainty_deg": _number(_median(sigma))})
 
 
 def _uncertainty(found: Solution | Relief, known: npt.NDArray[np.bool_]) -> npt.NDArray[np.float32]:

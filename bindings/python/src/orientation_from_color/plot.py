@@ -23,7 +23,16 @@ if TYPE_CHECKING:
 
 
 def normal_map(normals: npt.NDArray[np.floating[Any]]) -> npt.NDArray[np.uint8]:
-    """Normals as colors, (height, width, 3) uint8, red first: 255 (n + 1) / 2, and black where there is none."""
+    """Normals as colors, (height, width, 3) uint8, red first: 255 (n + 1) / 2, and black where there is none.
+
+    Raises:
+        ValueError: They are not unit vectors of shape (height, width, 3).
+    """
+    normals = np.asarray(normals)
+    if normals.ndim != 3 or normals.shape[2] != 3 or normals.dtype.kind != "f":
+        raise ValueError(f"normals: floats of shape (height, width, 3), not {normals.dtype} of shape {normals.shape}")
+    if np.nanmax(np.abs(normals), initial=0) > 1.001:
+        raise ValueError("normals: components are from -1 to 1")
     known = np.isfinite(normals).all(axis=-1) & (normals != 0).any(axis=-1)
     return np.where(known[..., None], np.rint(255 * (np.nan_to_num(normals) + 1) / 2), 0).astype(np.uint8)
 
