@@ -4,7 +4,7 @@
 # Packages that building the examples needs.
 # shellcheck disable=SC2034
 example_packages=(cmake g++ gcc gnuplot-nox libcli11-dev libexiv2-dev liblcms2-dev libopencv-core-dev libopencv-imgcodecs-dev
-    libopencv-imgproc-dev libopencv-videoio-dev libpng-dev libturbojpeg0-dev make nlohmann-json3-dev)
+    libopencv-imgproc-dev libopencv-videoio-dev libpng-dev libtiff-dev libturbojpeg0-dev make nlohmann-json3-dev)
 # What the tests need beyond those.
 # shellcheck disable=SC2034
 test_packages=(assimp-utils binutils clang doxygen libcmocka-dev libclang-rt-dev lintian pkg-config python3 python3-numpy python3-pil

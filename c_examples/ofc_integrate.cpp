@@ -74,7 +74,7 @@ std::optional<std::string> doubt_of_known(const cv::Mat &known, const cv::Mat &n
 
 int run(const Options &options)
 {
-    ResultFolder out(options.out, {"depth.tiff", "depth.png", "mesh.png", "mesh.ply", "report.json"},
+    ResultFolder out(options.out, "report.json", {"depth.tiff", "depth.png", "mesh.png", "mesh.ply"},
                      {options.normals, options.mask, options.known});
     Progress progress;
     progress.stage("reading");
@@ -101,16 +101,15 @@ int run(const Options &options)
     }
     progress.stage("writing");
     write_tiff(out / "depth.tiff", surface.depth);
-    write_image(out / "depth.png", options.depth.picture(surface));
-    write_image(out / "mesh.png", mesh_picture(surface, {960, 720}));
+    write_png(out / "depth.png", options.depth.picture(surface));
+    write_png(out / "mesh.png", mesh_picture(surface, {960, 720}));
     write_mesh(out / "mesh.ply", surface, normal_map(normals), options.mesh_faces);
     nlohmann::json report = options.depth.report(surface);
     report["doubts"] = map.doubts;
     const std::optional<double> bent = median_angle_deg(normals_of(surface.view()), normals);
     if (bent)
         report["median_angle_deg"] = *bent;
-    write_json(out / "report.json", report);
-    out.keep();
+    out.keep(report);
     progress.clear();
 
     const ofc_depth_result &r = surface.result;
@@ -128,6 +127,5 @@ int run(const Options &options)
 
 int main(int argc, char **argv)
 {
-    const Options options = parse(argc, argv);
-    return guarded("ofc_integrate", [&] { return run(options); });
+    return guarded("ofc_integrate", [&] { return run(parse(argc, argv)); });
 }

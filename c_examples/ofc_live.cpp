@@ -10,11 +10,12 @@
 #include "common/command_line.hpp"
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 #ifdef OFC_HIGHGUI
 #include <opencv2/highgui.hpp>
 #endif
@@ -83,22 +84,40 @@ cv::Mat drawn(const cv::Mat &frame, const Touch &touch, const Sensor &sensor, do
     return all;
 }
 
+// Puts a video in its place, which says nothing of what could not be written: the frames are counted.
+void close(cv::VideoWriter &video, FileAside &file, int frames)
+{
+    video.release();
+    const int written = static_cast<int>(cv::VideoCapture(file.path()).get(cv::CAP_PROP_FRAME_COUNT));
+    if (written != frames)
+        throw std::runtime_error("cannot write " + file.path().string() + ": it holds " + std::to_string(written) + " of " +
+                                 std::to_string(frames) + " frames");
+    file.finish();
+}
+
+// Ends the run as the last frame does.
+volatile std::sig_atomic_t is_interrupted = 0;
+
 int run(const Options &options)
 {
+    // A folder with live.avi in it is no folder of frames, but its own may be.
+    ResultFolder out(options.out, "report.json", {"live.avi", "contacts.csv"},
+                     {options.source, options.background, options.model, options.record, options.save_model});
+    std::signal(SIGINT, [](int) { is_interrupted = 1; });
+    std::signal(SIGTERM, [](int) { is_interrupted = 1; });
     Frames frames(options.source);
     cv::Mat frame = frames.next();
     if (frame.empty())
         throw UsageError(options.source + " has no frames");
     Sensor sensor(frame.size(), options.pixel_size, options.ball_radius);
     if (!options.background.empty()) {
-        const cv::Mat bare = read_image(options.background, cv::IMREAD_COLOR);
+        const cv::Mat bare = as_frame(read_picture(options.background));
         if (bare.size() != frame.size())
             throw UsageError(options.background + " has another size than the frames");
         sensor.set_background(bare);
     }
     if (!options.model.empty())
         sensor.load(options.model);
-    make_folder(options.out);
     const auto motion_jpeg = cv::VideoWriter::fourcc('M', 'J', 'P', 'G');
     const auto open = [&](const std::string &path, cv::Size size) {
         cv::VideoWriter writer(path, motion_jpeg, 25, size);
@@ -108,11 +127,15 @@ int run(const Options &options)
         return writer;
     };
     cv::VideoWriter video, record;
-    std::ofstream contacts(options.out + "/contacts.csv");
+    FileAside video_file(out / "live.avi"), record_file(options.record);
+    std::ostringstream contacts;
     contacts << "frame,touched,x_px,y_px,area,peak,peak_deviation,volume\n";
     int count = 0, touched = 0;
     double seconds = 0;
-    for (; !frame.empty() && (options.frames == 0 || count < options.frames); frame = frames.next(), count++) {
+    const cv::Size size = frame.size();
+    for (; !frame.empty() && is_interrupted == 0 && (options.frames == 0 || count < options.frames); frame = frames.next(), count++) {
+        if (frame.size() != size)
+            throw UsageError("frame " + std::to_string(count) + " is " + size_text(frame.size()) + ", the first one " + size_text(size));
         const auto start = std::chrono::steady_clock::now();
         const Touch touch = sensor.take(frame);
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
@@ -124,11 +147,11 @@ int run(const Options &options)
                  << (is_touched ? c.peak * sensor.solved().scale_deviation : 0) << ',' << c.volume << '\n';
         const cv::Mat shown = drawn(frame, touch, sensor, 1 / elapsed.count());
         if (!video.isOpened())
-            video = open(options.out + "/live.avi", shown.size());
+            video = open(video_file.path(), shown.size());
         video.write(shown);
         if (!options.record.empty()) {
             if (!record.isOpened())
-                record = open(options.record, frame.size());
+                record = open(record_file.path(), frame.size());
             record.write(frame);
         }
 #ifdef OFC_HIGHGUI
@@ -155,7 +178,13 @@ int run(const Options &options)
                            {"expected_error_deg", degrees(model.expected_error)}, {"circulation", model.circulation},
                            {"circulation_ratio", model.circulation_ratio}, {"balls", model.balls}, {"advice", model.advice},
                            {"region", model.region}};
-    write_json(options.out + "/report.json", report);
+    close(video, video_file, count);
+    if (!options.record.empty())
+        close(record, record_file, count);
+    WholeFile table(out / "contacts.csv");
+    table.write(contacts.str().data(), contacts.str().size());
+    table.finish();
+    out.keep(report);
     if (!options.save_model.empty()) {
         if (!sensor.has_model())
             throw UsageError("there is no model to save: nothing round was pressed in");
@@ -169,6 +198,5 @@ int run(const Options &options)
 
 int main(int argc, char **argv)
 {
-    const Options options = parse(argc, argv);
-    return guarded("ofc_live", [&] { return run(options); });
+    return guarded("ofc_live", [&] { return run(parse(argc, argv)); });
 }

@@ -4,6 +4,7 @@
 
 #include "common/progress.hpp"
 #include "common/scene.hpp"
+#include "photo/batch.hpp"
 #include "photo/doubt.hpp"
 #include "photo/options.hpp"
 #include "photo/overview.hpp"
@@ -14,26 +15,49 @@
 #include "photo/whole.hpp"
 
 #include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <unistd.h>
 
 namespace {
-
-// What a run may write into its folder.
-const std::vector<std::string> outputs = {"report.json",      "inliers.png",     "overview.png", "normals.png",
-                                         "normals.tiff",     "uncertainty.png", "depth.tiff",   "depth.png",
-                                         "uncertainty.tiff", "mesh.ply",        "classes.png", "albedo.png"};
-// What --save-planes writes, which may be the next run's input.
-constexpr const char *const planes[] = {"plane_r.png", "plane_g.png", "plane_b.png"};
 
 // Every stage by itself is run again to be timed, where that takes no time to speak of.
 constexpr int most_pixels_to_time = 4000000;
 
+void write_results(const ResultFolder &out, const Options &options, const Picture &picture, const Result &result)
+{
+    if (options.save_planes) {
+        const cv::Mat channels[] = {picture.channel(0), picture.channel(1), picture.channel(2)};
+        for (int c = 0; c < 3; c++)
+            write_png(out / saved_planes[c], channels[c]);
+    }
+    if (options.wants("inliers"))
+        write_png(out / "inliers.png", result.inliers);
+    if (options.wants("albedo") && result.paint && result.paint->taken)
+        write_png(out / "albedo.png", result.paint->picture());
+    if (result.solved() && options.wants("normals")) {
+        write_png(out / "normals.png", normal_map(result.normals));
+        write_tiff(out / "normals.tiff", result.normals);
+    }
+    if (result.surface.integrated() && options.wants("depth")) {
+        write_tiff(out / "depth.tiff", result.surface.depth);
+        write_png(out / "depth.png", options.depth.picture(result.surface));
+    }
+    if (result.whole && options.wants("classes"))
+        write_png(out / "classes.png", class_picture(*result.whole, cv::Rect({}, picture.size())));
+    if (result.surface.integrated() && options.wants("mesh"))
+        write_mesh(out / "mesh.ply", result.surface, picture.display(), options.mesh_faces);
+    if (!result.uncertainty.empty() && options.wants("uncertainty")) {
+        write_tiff(out / "uncertainty.tiff", result.uncertainty);
+        write_png(out / "uncertainty.png", uncertainty_picture(result, cv::Rect({}, picture.size())));
+    }
+    if (options.wants("overview"))
+        write_png(out / "overview.png", overview(picture, result));
+}
+
 int run(const Options &options)
 {
-    std::vector<std::string> names = outputs;
-    names.insert(names.end(), std::begin(paper_figures), std::end(paper_figures));
-    if (options.save_planes)
-        names.insert(names.end(), std::begin(planes), std::end(planes));
-    ResultFolder out(options.out, names, options.inputs());
+    ResultFolder out(options.out, "report.json", options.results(), options.inputs());
     Progress progress;
     progress.stage("reading");
     Picture picture;
@@ -98,9 +122,9 @@ int run(const Options &options)
             }
             found.input = steps.report;
             progress.stage("writing");
-            write_relief(options, frame, found, ellipsoid);
+            write_relief(out, options, frame, found);
+            out.keep(report_of(found, ellipsoid));
             progress.clear();
-            out.keep();
             if (ellipsoid != nullptr)
                 std::printf("%-10s %s\n", "ellipsoid",
                             ellipsoid->solved() ? "fits fewer pixels, and expects larger errors" : ofc_status_message(ellipsoid->status));
@@ -115,7 +139,7 @@ int run(const Options &options)
 
     const auto solve_by = [&](const Picture &solved, ofc_orientation_method method) {
         progress.stage("solving");
-        Result result = solve(solved, options.solve_params(method), options.shadows, options.depth);
+        Result result = solve(solved, options.solve_params(method), options.shadows, options.depth, options.wants_each_uncertainty());
         result.input = steps.report;
         result.true_f = true_f;
         if (result.solved() && !truth.empty())
@@ -150,6 +174,7 @@ int run(const Options &options)
     if (result.solved() && picture.size().area() <= most_pixels_to_time)
         time_stages(solved, result);
     if (result.solved() && options.whole()) {
+        progress.stage("completing the surface");
         complete(result, solved, !options.planes.empty());
         if (!truth.empty())
             result.median_error_deg = median_angle_deg(result.normals, truth);
@@ -158,55 +183,49 @@ int run(const Options &options)
         add_doubts(result, picture, options.light, options.solve_params(method));
 
     progress.stage("writing");
-    if (options.save_planes) {
-        const cv::Mat channels[] = {picture.channel(0), picture.channel(1), picture.channel(2)};
-        for (int c = 0; c < 3; c++)
-            write_image(out / planes[c], channels[c]);
+    write_results(out, options, picture, result);
+    std::optional<Result> direct;
+    if (options.paper_report() && result.solved()) {
+        direct = options.direct() ? result : solve_by(solved, OFC_ORIENTATION_DIRECT);
+        if (!direct->solved())
+            throw std::runtime_error(std::string("the direct method has no answer: ") + ofc_status_message(direct->status));
+        write_paper_figures(out.path(), solved, *direct);
     }
-    write_report(out / "report.json", result);
-    if (options.wants("inliers"))
-        write_image(out / "inliers.png", result.inliers);
-    if (options.wants("albedo") && result.paint && result.paint->taken)
-        write_image(out / "albedo.png", result.paint->picture());
-    if (result.solved() && options.wants("normals")) {
-        write_image(out / "normals.png", normal_map(result.normals));
-        write_normals_tiff(out / "normals.tiff", result.normals);
-    }
-    if (result.surface.integrated() && options.wants("depth")) {
-        write_tiff(out / "depth.tiff", result.surface.depth);
-        write_image(out / "depth.png", options.depth.picture(result.surface));
-    }
-    if (result.whole && options.wants("classes"))
-        write_image(out / "classes.png", class_picture(*result.whole, cv::Rect({}, picture.size())));
-    if (result.surface.integrated() && options.wants("mesh"))
-        write_mesh(out / "mesh.ply", result.surface, picture.display(), options.mesh_faces);
-    if (!result.uncertainty.empty() && options.wants("uncertainty")) {
-        write_tiff(out / "uncertainty.tiff", result.uncertainty);
-        write_image(out / "uncertainty.png", uncertainty_picture(result, cv::Rect({}, picture.size())));
-    }
-    if (options.wants("overview"))
-        write_image(out / "overview.png", overview(picture, result));
+    out.keep(report_of(result));
     progress.clear();
 
-    if (options.paper_report() && result.solved()) {
-        const Result direct = options.direct() ? result : solve_by(solved, OFC_ORIENTATION_DIRECT);
-        if (!direct.solved())
-            throw std::runtime_error(std::string("the direct method has no answer: ") + ofc_status_message(direct.status));
-        print_paper_report(solved, direct);
-        write_paper_figures(out.path(), solved, direct);
-    } else {
+    if (direct)
+        print_paper_report(solved, *direct);
+    else
         for (const Line &line : summary(result))
             std::fprintf(result.solved() ? stdout : stderr, "%-10s %s\n", line.label.c_str(), line.text.c_str());
-    }
-    out.keep();
     say_where(out.path(), options.wants("overview") ? "overview.png" : "report.json");
     return result.solved() ? 0 : 1;
+}
+
+// Runs what prints so that no one sees it, and then prints the report where that is asked for.
+int in_silence(const Options &options, const std::function<int()> &body)
+{
+    std::fflush(stdout);
+    const int before = dup(STDOUT_FILENO);
+    if (before < 0 || std::freopen("/dev/null", "w", stdout) == nullptr)
+        throw std::runtime_error("standard output cannot be put aside");
+    const int status = body();
+    std::fflush(stdout);
+    dup2(before, STDOUT_FILENO);
+    close(before);
+    if (!options.json.empty())
+        std::cout << std::ifstream(options.out + "/report.json").rdbuf();
+    return status;
 }
 
 } // namespace
 
 int main(int argc, char **argv)
 {
-    const Options options = parse_options(argc, argv);
-    return guarded("ofc_photo", [&] { return run(options); });
+    return guarded("ofc_photo", [&] {
+        const Options options = parse_options(argc, argv);
+        const auto solve_all = [&] { return options.images.size() > 1 ? run_each(options, run) : run(options); };
+        return options.quiet || !options.json.empty() ? in_silence(options, solve_all) : solve_all();
+    });
 }

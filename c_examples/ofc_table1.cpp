@@ -100,14 +100,14 @@ std::vector<Line> summary(const Experiment &e)
 int run(const Options &options)
 {
     const std::filesystem::path out = options.out;
-    ResultFolder results(out, {"table1.json", "overview.png", "directions.png", "fixed_points.png", "depth.png", "color.png", "inliers.png",
+    ResultFolder results(out, "table1.json",
+                         {"overview.png", "directions.png", "fixed_points.png", "depth.png", "color.png", "inliers.png",
                                "curves.png", "integral.png", "shaded_truth.png", "shaded_result.png", "angular_error.png",
                                "gray_error.png", "channels.png"},
                          {options.depth});
     const Relief relief = options.depth.empty() ? bust() : read_relief(options.depth, options.pixel_pitch);
     require_usable_slopes(relief, options.depth);
     const Experiment e = run_experiment(relief, options.experiment);
-    write_json(out / "table1.json", report(options, e));
     if (e.solved()) {
         e.table.print();
         std::printf("\nrobust R² %.4f; shadows by the direct method: %s\n", e.solution.fit.r_squared, e.shadows.c_str());
@@ -122,11 +122,11 @@ int run(const Options &options)
     std::printf("pixels %s\n", counts_in_words(e.solution).c_str());
     Sheet sheet(4);
     for (const Figure &figure : figures(relief, e)) {
-        write_image(out / figure.file, figure.image);
+        write_png(out / figure.file, figure.image);
         sheet.add(figure.title, figure.image, figure.span);
     }
-    write_image(out / "overview.png", sheet.draw(summary(e)));
-    results.keep();
+    write_png(out / "overview.png", sheet.draw(summary(e)));
+    results.keep(report(options, e));
     say_where(out, "overview.png");
     return e.solved() ? 0 : 1;
 }
@@ -135,6 +135,5 @@ int run(const Options &options)
 
 int main(int argc, char **argv)
 {
-    const Options options = parse(argc, argv);
-    return guarded("ofc_table1", [&] { return run(options); });
+    return guarded("ofc_table1", [&] { return run(parse(argc, argv)); });
 }

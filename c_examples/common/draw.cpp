@@ -1,6 +1,7 @@
 #include "common/draw.hpp"
 
 #include "common/gnuplot.hpp"
+#include "common/thin.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +102,7 @@ cv::Mat color_picture(const cv::Mat &values, cv::Vec2d range, const std::string 
     // Values that are all alike lie in the middle of a range that can be told apart on the bar.
     if (const double least = 1e-6 * std::max(std::abs(range[0]), 1.0); range[1] - range[0] < least)
         range += cv::Vec2d(-least, least);
-    cv::Mat map = colors_of(values, range), colors;
+    cv::Mat map = colors_of(thin(values, step_to(values.size(), most_drawn)), range), colors;
     const double extent = range[1] - range[0];
     // Small pictures are enlarged so that the text beside them is not larger than they are.
     const int factor = std::max(1, cvRound(400.0 / std::max({1, map.rows, map.cols})));

@@ -8,6 +8,9 @@
 // Colors are BGR.
 const cv::Scalar white(255, 255, 255), ink(40, 40, 40), dark(30, 30, 30), sheet_color(244, 244, 244);
 
+// Of larger maps every so-many-th pixel is drawn.
+constexpr std::size_t most_drawn = 4000000;
+
 // A text on a picture.
 struct Text {
     enum class Align { left, center, right };
@@ -32,7 +35,7 @@ double round_step(double range, int count);
 // Values (CV_32F, NaN is none) in the colors of cv::COLORMAP_VIRIDIS from `range[0]` to `range[1]`, dark where there is none.
 cv::Mat colors_of(const cv::Mat &values, cv::Vec2d range);
 
-// The colors of values under a title and beside a bar that says which color is which value.
+// The colors of values under a title and beside a bar that says which color is which value; of a large map fewer pixels.
 cv::Mat color_picture(const cv::Mat &values, cv::Vec2d range, const std::string &title);
 
 // Least and largest finite value; {0, 1} where there is none.

@@ -1,12 +1,12 @@
 #include "common/file_facts.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <exiv2/exiv2.hpp>
 #include <lcms2.h>
 #include <memory>
+#include <new>
 #include <png.h>
 
 namespace {
@@ -15,17 +15,11 @@ using Kind = FileTransfer::Kind;
 
 constexpr int curve_steps = 1024;
 
-bool begins_with(const std::string &path, const std::vector<std::string> &marks)
+bool begins_with(const std::vector<unsigned char> &bytes, const std::vector<std::string> &marks)
 {
-    std::array<char, 8> begin = {};
-    if (std::FILE *file = std::fopen(path.c_str(), "rb")) {
-        const std::size_t count = std::fread(begin.data(), 1, begin.size(), file);
-        std::fclose(file);
-        for (const std::string &mark : marks)
-            if (count >= mark.size() && std::memcmp(begin.data(), mark.data(), mark.size()) == 0)
-                return true;
-    }
-    return false;
+    return std::any_of(marks.begin(), marks.end(), [&](const std::string &mark) {
+        return bytes.size() >= mark.size() && std::memcmp(bytes.data(), mark.data(), mark.size()) == 0;
+    });
 }
 
 // The stored values of light to the power of 1 / gamma.
@@ -75,20 +69,38 @@ FileTransfer of_profile(const unsigned char *bytes, std::size_t count)
     return transfer;
 }
 
-// PNG's own chunks sRGB and gAMA, and nothing where the file has neither.
-FileTransfer of_png_chunks(const std::string &path)
+// What libpng has not read yet.
+struct Source {
+    const unsigned char *next;
+    std::size_t left;
+};
+
+void take(png_structp png, png_bytep to, png_size_t count)
 {
-    const std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-    if (!file)
-        return {};
+    auto *const source = static_cast<Source *>(png_get_io_ptr(png));
+    if (count > source->left)
+        png_error(png, "");
+    std::memcpy(to, source->next, count);
+    source->next += count;
+    source->left -= count;
+}
+
+// PNG's own chunks sRGB and gAMA, and nothing where the file has neither.
+FileTransfer of_png_chunks(const std::vector<unsigned char> &bytes)
+{
     png_structp png = png_create_read_struct(
         PNG_LIBPNG_VER_STRING, nullptr, [](png_structp failed, png_const_charp) { longjmp(png_jmpbuf(failed), 1); },
         [](png_structp, png_const_charp) {});
-    png_infop info = png_create_info_struct(png);
+    png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
+    if (info == nullptr) {
+        png_destroy_read_struct(&png, nullptr, nullptr);
+        throw std::bad_alloc();
+    }
+    Source source = {bytes.data(), bytes.size()};
     volatile double gamma = 0;
     volatile bool is_srgb = false;
     if (setjmp(png_jmpbuf(png)) == 0) {
-        png_init_io(png, file.get());
+        png_set_read_fn(png, &source, take);
         png_read_info(png, info);
         int intent = 0;
         double stored = 0;
@@ -112,17 +124,17 @@ int exif_number(const Exiv2::ExifData &exif, const char *key, int otherwise)
 
 } // namespace
 
-FileFacts facts_of(const std::string &path)
+FileFacts facts_of(const std::vector<unsigned char> &bytes)
 {
     FileFacts facts;
-    facts.is_jpeg = begins_with(path, {"\xff\xd8\xff"});
-    facts.is_png = begins_with(path, {"\x89PNG"});
-    facts.is_tiff = begins_with(path, {std::string("II*\0", 4), std::string("MM\0*", 4), "II+", std::string("MM\0+", 4)});
+    facts.is_jpeg = begins_with(bytes, {"\xff\xd8\xff"});
+    facts.is_png = begins_with(bytes, {"\x89PNG"});
+    facts.is_tiff = begins_with(bytes, {std::string("II*\0", 4), std::string("MM\0*", 4), "II+", std::string("MM\0+", 4)});
     if (facts.is_png)
-        facts.transfer = of_png_chunks(path);
+        facts.transfer = of_png_chunks(bytes);
     try {
         Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
-        const auto image = Exiv2::ImageFactory::open(path);
+        const auto image = Exiv2::ImageFactory::open(bytes.data(), static_cast<long>(bytes.size()));
         image->readMetadata();
         const Exiv2::ExifData &exif = image->exifData();
         const int orientation = exif_number(exif, "Exif.Image.Orientation", 1);

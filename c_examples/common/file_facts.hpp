@@ -20,7 +20,7 @@ struct FileFacts {
 };
 
 // Reads it; what a file does not say stays as above.
-FileFacts facts_of(const std::string &path);
+FileFacts facts_of(const std::vector<unsigned char> &bytes);
 
 // EXIF's orientations in words: how the picture was turned.
 const char *orientation_in_words(int orientation);

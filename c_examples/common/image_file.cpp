@@ -2,9 +2,16 @@
 
 #include "common/program.hpp"
 
-#include <fstream>
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <initializer_list>
 #include <iostream>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -23,11 +30,40 @@ struct Quiet {
     ~Quiet() { std::cerr.rdbuf(before); }
 };
 
-// OpenCV's reader fills a JPEG that is cut with gray and says nothing; libjpeg says what is wrong.
-cv::Mat read_jpeg(const std::string &path)
+// A file is read once: what reads it in parts takes a part that cannot be read for its end.
+std::vector<unsigned char> bytes_of(const std::string &path)
 {
-    std::ifstream file(path, std::ios::binary);
-    const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+    const auto words = [&] { return "cannot read " + path + ": " + std::strerror(errno); };
+    const auto is_one_of = [](std::initializer_list<int> errors) { return std::find(errors.begin(), errors.end(), errno) != errors.end(); };
+    if (!file && is_one_of({ENOENT, ENOTDIR, EACCES, ENAMETOOLONG, ELOOP}))
+        throw UsageError(words());
+    if (!file)
+        throw std::runtime_error(words());
+    constexpr std::size_t block = 1 << 20;
+    std::vector<unsigned char> bytes;
+    std::error_code failure;
+    if (const auto size = std::filesystem::file_size(path, failure); !failure)
+        bytes.reserve(size + block);
+    std::size_t count;
+    do {
+        const std::size_t before = bytes.size();
+        bytes.resize(before + block);
+        count = std::fread(bytes.data() + before, 1, block, file.get());
+        bytes.resize(before + count);
+    } while (count == block);
+    if (std::ferror(file.get()) != 0 && is_one_of({EISDIR}))
+        throw UsageError(words());
+    if (std::ferror(file.get()) != 0)
+        throw std::runtime_error(words());
+    if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+        throw UsageError("cannot read " + path + ": it is larger than 2 GiB");
+    return bytes;
+}
+
+// OpenCV's reader fills a JPEG that is cut with gray and says nothing; libjpeg says what is wrong.
+cv::Mat read_jpeg(const std::string &path, const std::vector<unsigned char> &bytes)
+{
     const std::unique_ptr<void, int (*)(tjhandle)> decoder(tjInitDecompress(), tjDestroy);
     int width = 0, height = 0, subsampling = 0, colors = 0;
     const auto check = [&](int failure) {
@@ -67,7 +103,7 @@ cv::Mat largest_page(const std::string &path, std::size_t pages, std::vector<std
     return largest;
 }
 
-cv::Mat read_other(const std::string &path, const FileFacts &facts, std::vector<std::string> &notes)
+cv::Mat read_other(const std::string &path, const std::vector<unsigned char> &bytes, const FileFacts &facts, std::vector<std::string> &notes)
 {
     // What is wrong is said below; OpenCV's own words are about its sources.
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
@@ -75,7 +111,7 @@ cv::Mat read_other(const std::string &path, const FileFacts &facts, std::vector<
     cv::Mat pixels;
     try {
         const std::size_t pages = facts.is_tiff ? cv::imcount(path) : 1;
-        pixels = pages > 1 ? largest_page(path, pages, notes) : cv::imread(path, cv::IMREAD_UNCHANGED);
+        pixels = pages > 1 ? largest_page(path, pages, notes) : cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
     } catch (const cv::Exception &) {
         throw UsageError("cannot read " + path + " as an image: it is damaged, or larger than 2^30 pixels");
     }
@@ -85,7 +121,36 @@ cv::Mat read_other(const std::string &path, const FileFacts &facts, std::vector<
     return pixels;
 }
 
+bool is_named_as_picture(const std::filesystem::path &path)
+{
+    static const char *const endings[] = {".png", ".jpg", ".jpeg", ".jpe", ".jp2", ".tif", ".tiff", ".bmp", ".webp", ".ppm", ".pnm"};
+    std::string ending = path.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return std::find(std::begin(endings), std::end(endings), ending) != std::end(endings);
+}
+
 } // namespace
+
+std::vector<std::string> pictures_in(const std::vector<std::string> &names)
+{
+    std::vector<std::string> pictures;
+    for (const std::string &name : names) {
+        if (!std::filesystem::is_directory(name)) {
+            pictures.push_back(name);
+            continue;
+        }
+        // A picture that cannot be read is an error then, and not passed over.
+        std::vector<std::string> found;
+        for (const auto &entry : std::filesystem::directory_iterator(name))
+            if (is_named_as_picture(entry.path()))
+                found.push_back(entry.path().string());
+        if (found.empty())
+            throw UsageError(name + " has no pictures");
+        std::sort(found.begin(), found.end());
+        pictures.insert(pictures.end(), found.begin(), found.end());
+    }
+    return pictures;
+}
 
 std::string size_text(cv::Size size)
 {
@@ -130,12 +195,11 @@ std::string ImageFile::in_words() const
 
 ImageFile read_image_file(const std::string &path)
 {
-    if (!std::ifstream(path))
-        throw UsageError("cannot read " + path + ": there is no such file, or it may not be read");
+    const std::vector<unsigned char> bytes = bytes_of(path);
     ImageFile file;
     file.path = path;
-    file.facts = facts_of(path);
-    file.pixels = file.facts.is_jpeg ? read_jpeg(path) : read_other(path, file.facts, file.notes);
+    file.facts = facts_of(bytes);
+    file.pixels = file.facts.is_jpeg ? read_jpeg(path, bytes) : read_other(path, bytes, file.facts, file.notes);
     if (file.facts.orientation > 1) {
         // OpenCV turns what it reads of a TIFF.
         if (!file.facts.is_tiff)

@@ -20,6 +20,10 @@ struct ImageFile {
 // Reads it, or throws UsageError: where it cannot be read, or is cut or damaged.
 ImageFile read_image_file(const std::string &path);
 
+// The names of pictures: those that are given, and for a folder those in it that are named as pictures are, in the order of their
+// names. Throws UsageError for a folder without any.
+std::vector<std::string> pictures_in(const std::vector<std::string> &names);
+
 // A picture as EXIF's orientation says that it was meant.
 cv::Mat upright(const cv::Mat &stored, int orientation);
 

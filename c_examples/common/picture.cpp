@@ -73,14 +73,6 @@ cv::Mat Picture::display() const
     return shown;
 }
 
-cv::Mat read_image(const std::string &path, int flags)
-{
-    cv::Mat image = cv::imread(path, flags);
-    if (image.empty())
-        throw UsageError("cannot read " + path + " as an image");
-    return image;
-}
-
 Picture read_picture(const std::string &path)
 {
     ImageFile file = read_image_file(path);
@@ -175,19 +167,6 @@ std::optional<double> median_angle_deg(const cv::Mat &normals, const cv::Mat &tr
     return *middle;
 }
 
-void write_normals_tiff(const std::string &path, const cv::Mat &normals)
-{
-    write_tiff(path, first_and_third_swapped(normals)); // imwrite swaps back: the file's samples are x, y, z
-}
-
-void write_tiff(const std::string &path, const cv::Mat &floats)
-{
-    // OpenCV's own choice for three floats is LogLuv, which is lossy, cannot hold a negative number, and which few
-    // programs read.
-    constexpr int no_compression = 1;
-    write_image(path, floats, {cv::IMWRITE_TIFF_COMPRESSION, no_compression});
-}
-
 cv::Mat shade(const cv::Mat &normals, const cv::Vec3d &light)
 {
     const cv::Vec3d direction = cv::normalize(light);
@@ -196,20 +175,4 @@ cv::Mat shade(const cv::Mat &normals, const cv::Vec3d &light)
         for (int x = 0; x < normals.cols; x++)
             image.at<uchar>(y, x) = cv::saturate_cast<uchar>(255 * direction.dot(cv::Vec3d(normals.at<cv::Vec3f>(y, x))));
     return image;
-}
-
-void write_image(const std::string &path, const cv::Mat &image, const std::vector<int> &parameters)
-{
-    std::vector<uchar> bytes;
-    bytes.reserve(image.total() * image.elemSize() + (1 << 16));
-    bool encoded = false;
-    try {
-        encoded = cv::imencode(std::filesystem::path(path).extension(), image, bytes, parameters);
-    } catch (const cv::Exception &) {
-    }
-    if (!encoded)
-        throw std::runtime_error("cannot write " + path);
-    WholeFile file(path);
-    file.write(bytes.data(), bytes.size());
-    file.finish();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/image_file.hpp"
+#include "common/image_writer.hpp"
 #include "common/program.hpp"
 #include "common/results.hpp"
 
@@ -39,9 +40,6 @@ struct Picture {
     cv::Mat display() const;
 };
 
-// One frame of many, by cv::imread, or UsageError.
-cv::Mat read_image(const std::string &path, int flags);
-
 // A color picture. Its alpha channel, if it says anything, is the mask.
 Picture read_picture(const std::string &path);
 Picture read_planes(const std::string &red, const std::string &green, const std::string &blue);
@@ -51,13 +49,9 @@ Picture read_planes(const std::string &red, const std::string &green, const std:
 // stored; `orientation` is the picture's.
 cv::Mat read_mask(const std::string &path, cv::Size size, int orientation = 1);
 
-// Normals are CV_32FC3 in the order x, y, z, zero where there is none. In the TIFF the samples are x, y, z too.
+// Normals are CV_32FC3 in the order x, y, z, zero where there is none, and so are the samples of a TIFF of them.
 cv::Mat first_and_third_swapped(const cv::Mat &image);
 cv::Mat read_normals_tiff(const std::string &path, cv::Size size);
-void write_normals_tiff(const std::string &path, const cv::Mat &normals);
-
-// Floats as they are, uncompressed.
-void write_tiff(const std::string &path, const cv::Mat &floats);
 
 // Median angle over the pixels where both have a normal; nothing where there is no such pixel.
 std::optional<double> median_angle_deg(const cv::Mat &normals, const cv::Mat &truth);
@@ -66,6 +60,3 @@ using ofc::opencv::normal_map;
 
 // Brightness under one white light from that direction, 8 bits.
 cv::Mat shade(const cv::Mat &normals, const cv::Vec3d &light);
-
-// Writes an image, with cv::imwrite's parameters, or throws std::runtime_error.
-void write_image(const std::string &path, const cv::Mat &image, const std::vector<int> &parameters = {});

@@ -22,14 +22,6 @@ int guarded(const char *program, const std::function<int()> &body)
     }
 }
 
-void make_folder(const std::filesystem::path &folder)
-{
-    std::error_code failure;
-    std::filesystem::create_directories(folder, failure);
-    if (failure)
-        throw UsageError("cannot make the folder " + folder.string() + ": " + failure.message());
-}
-
 int status_of_output()
 {
     std::cout.flush();

@@ -18,9 +18,6 @@ int guarded(const char *program, const std::function<int()> &body);
 // Tells the user where the results are, and which of them to look at first.
 void say_where(const std::filesystem::path &folder, const char *first);
 
-// Makes the folder for the results, or throws UsageError.
-void make_folder(const std::filesystem::path &folder);
-
 // Ends a program whose command line asked for no more than a text: 0, or 1 where standard output did not take it.
 int status_of_output();
 

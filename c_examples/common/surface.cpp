@@ -1,10 +1,10 @@
 #include "common/surface.hpp"
 
 #include "common/picture.hpp"
+#include "common/thin.hpp"
 
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <sstream>
 
@@ -49,32 +49,18 @@ cv::Mat normals_of(const ofc_depth_map &map)
     return normals;
 }
 
-namespace {
-
-// Every `step`-th pixel, in the middle of the picture.
-cv::Mat thin(const cv::Mat &map, int step)
-{
-    const cv::Point first((map.cols - 1) % step / 2, (map.rows - 1) % step / 2);
-    const cv::Size size((map.cols - 1) / step + 1, (map.rows - 1) / step + 1);
-    cv::Mat few(size, map.type());
-    for (int y = 0; y < size.height; y++)
-        for (int x = 0; x < size.width; x++)
-            std::memcpy(few.ptr(y, x), map.ptr(first.y + y * step, first.x + x * step), map.elemSize());
-    return few;
-}
-
-} // namespace
-
 void write_mesh(const std::string &path, const Surface &surface, const cv::Mat &bgr, std::size_t most_faces)
 {
     // Two triangles a pixel.
     const double faces = 2.0 * cv::countNonZero(surface.depth == surface.depth);
     if (most_faces > 0 && faces > static_cast<double>(most_faces)) {
         const int step = static_cast<int>(std::ceil(std::sqrt(faces / static_cast<double>(most_faces))));
+        // In the middle of the picture, as the mesh is.
+        const cv::Point first((surface.depth.cols - 1) % step / 2, (surface.depth.rows - 1) % step / 2);
         Surface few = surface;
-        few.depth = thin(surface.depth, step);
+        few.depth = thin(surface.depth, step, first);
         few.params.pixel_pitch *= step;
-        write_mesh(path, few, thin(bgr, step), 0);
+        write_mesh(path, few, thin(bgr, step, first), 0);
         return;
     }
     const cv::Mat &depth = surface.depth;

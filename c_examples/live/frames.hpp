@@ -1,9 +1,14 @@
 // Frames of a camera, a video or a folder.
 #pragma once
 
+#include "common/picture.hpp"
+
 #include <opencv2/videoio.hpp>
 #include <string>
 #include <vector>
+
+// A picture from a file as a frame, BGR with 8 bits, or UsageError.
+cv::Mat as_frame(const Picture &picture);
 
 class Frames {
   public:

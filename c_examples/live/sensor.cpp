@@ -153,8 +153,7 @@ void Sensor::save(const std::string &path) const
 {
     std::array<std::uint8_t, OFC_RIG_MODEL_BYTES> bytes;
     check(ofc_rig_model_save(&model, bytes.data(), bytes.size()));
-    std::ofstream file(path, std::ios::binary);
-    file.write(reinterpret_cast<const char *>(bytes.data()), bytes.size());
-    if (!file)
-        throw UsageError(path + " cannot be written");
+    WholeFile file(path);
+    file.write(bytes.data(), bytes.size());
+    file.finish();
 }

@@ -17,10 +17,12 @@ constexpr int sample_size = 8192;
 // is alike in neighbors, and not that a model may be wrong as a whole.
 constexpr double chi_squared_of_one = 16.3, chi_squared_to_speak = 60, gain_to_speak = 0.5;
 
-// Linear pictures fit worse as sRGB, by a third and more, and those that are sRGB as much better.
-constexpr double much_better = 0.85;
+// What is linear fits worse as sRGB, mostly by far, and what is sRGB better.
+constexpr double much_better = 0.85, much_worse = 1.5;
 // And then the model explains the colors, where a gel or a near light looks like a curve too.
 constexpr double down_to_noise = 1.3;
+// What is as likely as not counts by half, in squares.
+const double half = std::sqrt(0.5);
 
 struct Solved {
     ofc_status status;
@@ -110,9 +112,9 @@ void widen(Result &result, const cv::Mat &angle)
         }
 }
 
-// Adds what may be otherwise, given the picture as it would be then.
+// Adds what may be otherwise, given the picture as it would be then, and how much of the turn counts as an error.
 void add(Result &result, const Picture &as_it_is, const Solved &is, const Picture &otherwise, const ofc_solve_params &params,
-         const std::string &words)
+         const std::string &words, double share = 1)
 {
     const Solved other = solve_quietly(otherwise, params);
     if (is.status != OFC_STATUS_OK || other.status != OFC_STATUS_OK)
@@ -124,8 +126,8 @@ void add(Result &result, const Picture &as_it_is, const Solved &is, const Pictur
     const double turn = quantile(angle, 0.5);
     if (!std::isfinite(turn))
         return;
-    widen(result, angle);
-    result.doubts.push_back({words, turn});
+    widen(result, share * angle);
+    result.doubts.push_back({words, turn, share * turn});
 }
 
 } // namespace
@@ -197,11 +199,15 @@ void add_doubts(Result &result, const Picture &picture, const LightOptions &opti
                      transfer.source.c_str(), name));
         } else if (transfer.kind == Kind::unsaid && picture.pixels.depth() != CV_32F) {
             const Picture undone = linearized(thin, {Kind::srgb, "", 2.2, {}});
-                    const double straight = misfit(thin, is), bent = misfit(undone, solve_quietly(undone, params));
+            const double straight = misfit(thin, is), bent = misfit(undone, solve_quietly(undone, params));
             result.input["transfer"]["misfit"] = {{"as_it_is", straight}, {"as_srgb", bent}};
             if (bent < much_better * straight && bent < down_to_noise)
                 add(result, thin, is, undone, params,
                     "the colors fit better as sRGB, and were taken for linear: --transfer srgb undoes it, --transfer linear rules it out");
+            else if (bent < much_worse * straight)
+                add(result, thin, is, undone, params,
+                    "neither the file nor its colors tell whether it holds sRGB, and it was taken for linear: --transfer srgb or linear says it",
+                    half);
         }
     }
     if (options.ambient == "none" && options.dark.empty() && result.doubts.empty()) {

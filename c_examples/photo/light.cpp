@@ -1,11 +1,11 @@
 #include "photo/light.hpp"
 
+#include "common/thin.hpp"
 #include "photo/text.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <opencv2/imgproc.hpp>
 
 namespace {
@@ -239,18 +239,9 @@ Picture less(const Picture &picture, const cv::Vec3d &offset)
 
 Picture thinned(const Picture &picture, std::size_t most)
 {
-    const int step = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(picture.size().area()) / static_cast<double>(most))));
-    if (step <= 1)
-        return picture;
-    const cv::Size size((picture.size().width + step - 1) / step, (picture.size().height + step - 1) / step);
-    Picture thin = picture;
-    for (cv::Mat *plane : {&thin.pixels, &thin.green, &thin.blue, &thin.mask})
-        if (!plane->empty()) {
-            cv::Mat few(size, plane->type());
-            for (int y = 0; y < size.height; y++)
-                for (int x = 0; x < size.width; x++)
-                    std::memcpy(few.ptr(y, x), plane->ptr(y * step, x * step), plane->elemSize());
-            *plane = few;
-        }
-    return thin;
+    const int step = step_to(picture.size(), most);
+    Picture few = picture;
+    for (cv::Mat *plane : {&few.pixels, &few.green, &few.blue, &few.mask})
+        *plane = thin(*plane, step);
+    return few;
 }

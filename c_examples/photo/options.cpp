@@ -1,12 +1,32 @@
 #include "photo/options.hpp"
 
+#include "photo/paper_report.hpp"
+
 #include <algorithm>
 
 namespace {
 
+struct Output {
+    const char *name; // as --outputs has it
+    std::vector<std::string> files;
+};
+
+const std::vector<Output> all_outputs = {{"normals", {"normals.png", "normals.tiff"}}, {"uncertainty", {"uncertainty.png", "uncertainty.tiff"}},
+                                         {"depth", {"depth.tiff", "depth.png"}},       {"mesh", {"mesh.ply"}},
+                                         {"overview", {"overview.png"}},               {"inliers", {"inliers.png"}},
+                                         {"classes", {"classes.png"}},                 {"albedo", {"albedo.png"}}};
+
+std::vector<std::string> names_of_outputs()
+{
+    std::vector<std::string> names;
+    for (const Output &output : all_outputs)
+        names.emplace_back(output.name);
+    return names;
+}
+
 void check_together(const Options &options)
 {
-    const bool own_scene = options.image.empty() && options.planes.empty();
+    const bool own_scene = options.images.empty() && options.planes.empty();
     if (own_scene && (!options.mask.empty() || !options.truth.empty() || !options.background.empty()))
         throw CLI::RequiredError("IMAGE or --planes, to which --mask, --truth and --background belong,");
     if (options.light.fits_ambient() && (!options.background.empty() || options.model == "relief"))
@@ -18,6 +38,20 @@ void check_together(const Options &options)
 bool Options::wants(const char *output) const
 {
     return outputs.empty() || std::find(outputs.begin(), outputs.end(), output) != outputs.end();
+}
+
+std::vector<std::string> Options::results() const
+{
+    std::vector<std::string> names;
+    const auto add = [&](const auto &files) { names.insert(names.end(), std::begin(files), std::end(files)); };
+    for (const Output &output : all_outputs)
+        if (wants(output.name))
+            add(output.files);
+    if (save_planes)
+        add(saved_planes);
+    if (paper_report())
+        add(paper_figures);
+    return names;
 }
 
 std::vector<std::string> Options::inputs() const
@@ -55,8 +89,10 @@ Options parse_options(int argc, char **argv)
     CommandLine line("ofc_photo",
                      "Surface normals from one color picture of a matte, uniformly colored object under colored lights.\n"
                      "Without IMAGE it renders a scene of its own and compares with the truth.");
-    auto *image = line.add_option("IMAGE", options.image, "Color picture of 8 or 16 bits or floats a channel (PNG, JPEG, TIFF, ...)");
-    image->check(not_empty);
+    auto *image = line.add_option("IMAGE", options.images,
+                                  "Color picture of 8 or 16 bits or floats a channel (PNG, JPEG, TIFF, ...), or several, or folders of them:\n"
+                                  "each has a folder of its own then, beside summary.csv");
+    image->expected(1, -1)->check(not_empty);
     line.add_option("--planes", options.planes, "Three grayscale pictures, each under one light, instead of IMAGE")
         ->expected(3)
         ->check(not_empty)
@@ -108,13 +144,19 @@ Options parse_options(int argc, char **argv)
                     "What to write beside report.json, with commas: normals, uncertainty, depth, mesh, overview, inliers, classes,\n"
                     "albedo (default: all of them)")
         ->delimiter(',')
-        ->check(CLI::IsMember({"normals", "uncertainty", "depth", "mesh", "overview", "inliers", "classes", "albedo"}))
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember(names_of_outputs()))
         ->type_name("LIST");
     line.add_option("--mesh-faces", options.mesh_faces, "Triangles of the mesh at most, 0 for all (default: 2000000)")
         ->check(whole_number)
         ->type_name("N");
     line.add_flag("--save-planes", options.save_planes, "Write the channels as three gray pictures, as --planes takes them");
+    line.add_flag("--quiet", options.quiet, "Print nothing but what is wrong");
+    line.add_option("--json", options.json, "With -, print the report and nothing else")->check(CLI::IsMember({"-"}));
     line.parse_or_exit(argc, argv, [&] { check_together(options); });
+    options.images = pictures_in(options.images);
+    if (options.images.size() == 1)
+        options.image = options.images.front();
     options.out = line.out;
     options.depth.is_wanted = options.wants("depth") || options.wants("mesh") || options.wants("overview");
     return options;

@@ -9,8 +9,12 @@
 #include <string>
 #include <vector>
 
+// What --save-planes writes, which may be the next run's input.
+constexpr const char *const saved_planes[] = {"plane_r.png", "plane_g.png", "plane_b.png"};
+
 struct Options {
-    std::string image;                   // empty: the program renders its own scene
+    std::vector<std::string> images;     // what to solve, folders by their pictures; none: the program renders its own scene
+    std::string image;                   // the one that a run solves, or empty
     std::vector<std::string> planes;     // none, or red, green, blue
     std::string mask, truth, background; // empty where not given
     std::uint64_t seed = 0;
@@ -28,15 +32,20 @@ struct Options {
     std::vector<std::string> outputs; // what to write beside the report; empty: everything
     std::size_t mesh_faces = 2000000; // at most; 0: as many as there are
     std::string out;
+    bool quiet = false; // nothing is printed but what is wrong
+    std::string json;   // "-": the report is printed, and nothing else
 
     // Whether this is wanted: normals, uncertainty, depth, mesh, overview, inliers, classes or albedo.
     bool wants(const char *output) const;
+    // The files that a run may write beside its report.
+    std::vector<std::string> results() const;
     // The files that are read.
     std::vector<std::string> inputs() const;
 
     bool direct() const { return orientation == "direct"; }
     // Shadows and all else that the mask holds. How to span gaps is a question of lit pixels alone.
     bool whole() const { return !lit_only && depth.method == "poisson"; }
+    bool wants_each_uncertainty() const { return whole() || wants("uncertainty") || wants("overview"); }
     bool paper_report() const { return report == "paper"; }
 
     // What is known of a relief on a plane.

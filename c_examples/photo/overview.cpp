@@ -3,6 +3,8 @@
 #include "common/plot_colors.hpp"
 #include "common/plot_slants.hpp"
 #include "common/surface_view.hpp"
+#include "common/thin.hpp"
+#include "photo/light.hpp"
 #include "photo/whole.hpp"
 
 #include <opencv2/imgproc.hpp>
@@ -35,10 +37,24 @@ cv::Mat inlier_picture(const cv::Mat &looked_at, const Result &result)
     return shown;
 }
 
+// The same result at every so-many-th pixel.
+Result thinned(const Result &result, int step)
+{
+    Result few = result;
+    for (cv::Mat *map : {&few.inliers, &few.normals, &few.uncertainty, &few.surface.depth})
+        *map = thin(*map, step);
+    if (few.whole)
+        few.whole->classes = thin(few.whole->classes, step);
+    few.surface.params.pixel_pitch *= step;
+    return few;
+}
+
 } // namespace
 
-cv::Mat overview(const Picture &picture, const Result &result)
+cv::Mat overview(const Picture &large, const Result &of_large)
 {
+    const Picture picture = thinned(large, most_drawn);
+    const Result result = thinned(of_large, step_to(large.size(), most_drawn));
     const cv::Mat shown = picture.display();
     const cv::Rect part = interesting(shown);
     Sheet sheet(4);
@@ -66,5 +82,5 @@ cv::Mat overview(const Picture &picture, const Result &result)
     const cv::Mat &depth = result.surface.depth;
     add("depth, " + std::string(result.depth.unit()), integrated, [&] { return colors_of(depth, range_of(depth))(part); });
     add("the surface from the side", integrated, [&] { return mesh_picture(result.surface, Sheet::panel()); });
-    return sheet.draw(summary(result));
+    return sheet.draw(summary(of_large));
 }

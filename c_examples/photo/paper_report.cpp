@@ -49,11 +49,11 @@ void print_paper_report(const Picture &picture, const Result &direct)
 void write_paper_figures(const std::filesystem::path &folder, const Picture &picture, const Result &direct)
 {
     const ofc_solution &s = direct.solution;
-    write_image(folder / paper_figures[0], plot_directions(triple(s.slant_rad), triple(s.tilts.tilt_rad),
+    write_png(folder / paper_figures[0], plot_directions(triple(s.slant_rad), triple(s.tilts.tilt_rad),
                                                            triple(s.ellipsoid.cosines), Sheet::panel(3)));
-    write_image(folder / paper_figures[1], plot_slants(FixedPointProblem::of(s), Sheet::panel()));
-    write_image(folder / paper_figures[2], plot_colors(picture, s, direct.inliers, Sheet::panel()));
+    write_png(folder / paper_figures[1], plot_slants(FixedPointProblem::of(s), Sheet::panel()));
+    write_png(folder / paper_figures[2], plot_colors(picture, s, direct.inliers, Sheet::panel()));
     if (direct.check)
-        write_image(folder / paper_figures[3], channels_picture(picture, direct.inliers, direct.normals, s.orientation.f,
+        write_png(folder / paper_figures[3], channels_picture(picture, direct.inliers, direct.normals, s.orientation.f,
                                                                 direct.check->correlation));
 }

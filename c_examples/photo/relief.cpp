@@ -70,42 +70,6 @@ cv::Mat overview(const Picture &picture, const ReliefResult &result)
     return sheet.draw(summary(result));
 }
 
-json report(const ReliefResult &result, const Result *ellipsoid)
-{
-    const ofc_relief &r = result.relief;
-    const bool is_solved = result.solved();
-    json report = {{"status", ofc_status_message(result.status)},
-                   {"status_code", result.status},
-                   {"version", ofc_version_string()},
-                   {"model", "relief"},
-                   {"input", result.input},
-                   {"reason", is_solved ? json(nullptr) : json(no_relief(result))}};
-    if (ellipsoid != nullptr)
-        report["ellipsoid"] = {{"status", ofc_status_message(ellipsoid->status)}, {"status_code", ellipsoid->status}};
-    if (!is_solved)
-        return report;
-    report["confidence"] = {{"expected_error_deg", degrees(r.expected_error)}, {"in_words", trust(result)}};
-    report["scale"] = {{"from", scale_name(r.scale_source)}, {"relative_deviation", r.scale_deviation}};
-    report["slopes"] = {{r.slopes[0], r.slopes[1], r.slopes[2]}, {r.slopes[3], r.slopes[4], r.slopes[5]}};
-    report["noise"] = r.noise;
-    report["background_given"] = r.has_background != 0;
-    report["pixels"] = {{"none", cv::countNonZero(result.classes == OFC_RELIEF_NONE)},
-                        {"plane", cv::countNonZero(result.classes == OFC_RELIEF_PLANE)},
-                        {"skirt", cv::countNonZero(result.classes == OFC_RELIEF_SKIRT)},
-                        {"contact", cv::countNonZero(result.classes == OFC_RELIEF_CONTACT)}};
-    report["evidence"] = {{"circulation", r.circulation},         {"circulation_ratio", r.circulation_ratio},
-                          {"anisotropy", r.anisotropy},           {"signal_to_noise", r.signal_to_noise},
-                          {"border", r.border},                   {"outward", r.outward},
-                          {"disagreement", r.disagreement},       {"tilt", r.tilt}};
-    if (result.surface.integrated()) {
-        report["depth"] = result.depth.report(result.surface);
-        report["depth"]["highest"] = highest(result);
-    }
-    if (result.median_error_deg)
-        report["median_error_deg"] = *result.median_error_deg;
-    return report;
-}
-
 } // namespace
 
 bool ReliefResult::is_better_than(const Result &ellipsoid) const
@@ -224,28 +188,62 @@ std::vector<Line> summary(const ReliefResult &result)
     return lines;
 }
 
-void write_relief(const Options &options, const Picture &picture, const ReliefResult &result, const Result *ellipsoid)
+json report_of(const ReliefResult &result, const Result *ellipsoid)
 {
-    const std::string &folder = options.out;
-    write_json(folder + "/report.json", report(result, ellipsoid));
+    const ofc_relief &r = result.relief;
+    const bool is_solved = result.solved();
+    json report = {{"status", ofc_status_message(result.status)},
+                   {"status_code", result.status},
+                   {"version", ofc_version_string()},
+                   {"model", "relief"},
+                   {"input", result.input},
+                   {"reason", is_solved ? json(nullptr) : json(no_relief(result))}};
+    if (ellipsoid != nullptr)
+        report["ellipsoid"] = {{"status", ofc_status_message(ellipsoid->status)}, {"status_code", ellipsoid->status}};
+    if (!is_solved)
+        return report;
+    report["confidence"] = {{"expected_error_deg", degrees(r.expected_error)}, {"in_words", trust(result)}};
+    report["scale"] = {{"from", scale_name(r.scale_source)}, {"relative_deviation", r.scale_deviation}};
+    report["slopes"] = {{r.slopes[0], r.slopes[1], r.slopes[2]}, {r.slopes[3], r.slopes[4], r.slopes[5]}};
+    report["noise"] = r.noise;
+    report["background_given"] = r.has_background != 0;
+    report["pixels"] = {{"none", cv::countNonZero(result.classes == OFC_RELIEF_NONE)},
+                        {"plane", cv::countNonZero(result.classes == OFC_RELIEF_PLANE)},
+                        {"skirt", cv::countNonZero(result.classes == OFC_RELIEF_SKIRT)},
+                        {"contact", cv::countNonZero(result.classes == OFC_RELIEF_CONTACT)}};
+    report["evidence"] = {{"circulation", r.circulation},         {"circulation_ratio", r.circulation_ratio},
+                          {"anisotropy", r.anisotropy},           {"signal_to_noise", r.signal_to_noise},
+                          {"border", r.border},                   {"outward", r.outward},
+                          {"disagreement", r.disagreement},       {"tilt", r.tilt}};
+    if (result.surface.integrated()) {
+        report["depth"] = result.depth.report(result.surface);
+        report["depth"]["highest"] = highest(result);
+    }
+    if (result.median_error_deg)
+        report["median_error_deg"] = *result.median_error_deg;
+    return report;
+}
+
+void write_relief(const ResultFolder &out, const Options &options, const Picture &picture, const ReliefResult &result)
+{
     if (!result.solved())
         return;
     if (options.wants("classes"))
-        write_image(folder + "/classes.png", class_picture(result.classes));
+        write_png(out / "classes.png", class_picture(result.classes));
     if (options.wants("normals")) {
-        write_image(folder + "/normals.png", normal_map(result.normals));
-        write_normals_tiff(folder + "/normals.tiff", result.normals);
+        write_png(out / "normals.png", normal_map(result.normals));
+        write_tiff(out / "normals.tiff", result.normals);
     }
     if (options.wants("uncertainty"))
-        write_tiff(folder + "/uncertainty.tiff", result.uncertainty);
+        write_tiff(out / "uncertainty.tiff", result.uncertainty);
     if (result.surface.integrated()) {
         if (options.wants("depth")) {
-            write_tiff(folder + "/depth.tiff", result.surface.depth);
-            write_image(folder + "/depth.png", result.depth.picture(result.surface));
+            write_tiff(out / "depth.tiff", result.surface.depth);
+            write_png(out / "depth.png", result.depth.picture(result.surface));
         }
         if (options.wants("mesh"))
-            write_mesh(folder + "/mesh.ply", result.surface, picture.display(), options.mesh_faces);
+            write_mesh(out / "mesh.ply", result.surface, picture.display(), options.mesh_faces);
     }
     if (options.wants("overview"))
-        write_image(folder + "/overview.png", overview(picture, result));
+        write_png(out / "overview.png", overview(picture, result));
 }

@@ -35,7 +35,10 @@ const char *no_relief(const ReliefResult &result);
 // How far to trust it, in words.
 std::string trust(const ReliefResult &result);
 
-// Writes the files of a relief that are wanted. `ellipsoid` is what the first model says of the picture; null where it was not asked.
-void write_relief(const Options &options, const Picture &picture, const ReliefResult &result, const Result *ellipsoid);
+// Writes the files of a relief that are wanted.
+void write_relief(const ResultFolder &out, const Options &options, const Picture &picture, const ReliefResult &result);
+
+// `ellipsoid` is what the first model says of the picture; null where it was not asked.
+nlohmann::ordered_json report_of(const ReliefResult &result, const Result *ellipsoid);
 
 std::vector<Line> summary(const ReliefResult &result);

@@ -118,7 +118,7 @@ json doubts(const Result &result)
 {
     json list = json::array();
     for (const Doubt &doubt : result.doubts)
-        list.push_back({{"in_words", doubt.words}, {"turn_deg", doubt.degrees}});
+        list.push_back({{"in_words", doubt.words}, {"turn_deg", doubt.turn}, {"expected_deg", doubt.expected}});
     return list;
 }
 
@@ -182,7 +182,7 @@ cv::Mat uncertainty_picture(const Result &result, cv::Rect part)
                          text("1 sigma of the normals, degrees (median %.2f)", quantile(result.uncertainty, 0.5)));
 }
 
-void write_report(const std::string &path, const Result &result)
+json report_of(const Result &result)
 {
     const ofc_solution &s = result.solution;
     const bool is_fitted = s.fit.inlier_count > 0, is_ellipsoid = s.ellipsoid.norms[0] > 0, is_oriented = s.orientation.rank > 0;
@@ -251,7 +251,7 @@ void write_report(const std::string &path, const Result &result)
                                                  {"slant_deg", degrees(truth.slants[c])},
                                                  {"norm", truth.norms[c]}};
     }
-    write_json(path, report);
+    return report;
 }
 
 std::vector<Line> summary(const Result &result)

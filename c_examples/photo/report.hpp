@@ -11,7 +11,7 @@ cv::Mat uncertainty_picture(const Result &result, cv::Rect part);
 // Adds a line; a long one becomes several, of which only the first has the label.
 void add_wrapped(std::vector<Line> &lines, std::string label, std::string text);
 
-void write_report(const std::string &path, const Result &result);
+nlohmann::ordered_json report_of(const Result &result);
 
 // The main numbers in a few lines, each with a short label, for the terminal and the overview.
 std::vector<Line> summary(const Result &result);

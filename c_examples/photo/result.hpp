@@ -18,10 +18,10 @@ struct Whole {
     ofc_surface_result result = {};
 };
 
-// What may be otherwise: by how many degrees the normals would turn then, at half of them.
+// What may be otherwise, by how many degrees the normals would turn then, at half of them, and how much of that is expected.
 struct Doubt {
     std::string words;
-    double degrees;
+    double turn, expected; // in degrees
 };
 
 struct Result {
@@ -31,7 +31,8 @@ struct Result {
     ofc_solution solution = {};     // but for pixel_counts and reason zero where the status is negative
     cv::Mat inliers;                // CV_8U, 255 for an inlier
     cv::Mat normals;                // CV_32FC3 x, y, z; zero where there is none
-    cv::Mat uncertainty;            // CV_32F, 1-sigma angle in degrees, NaN where there is no normal; empty where it is not known
+    cv::Mat uncertainty;            // CV_32F, 1-sigma angle in degrees, NaN where there is no normal; empty where it is not known, and
+                                    // of fewer pixels where nothing else is wanted of it than its quantiles
     double open_outline = std::nan(""); // the share of the surface's outline at which it goes on; NaN where there are no normals
     ofc_covariance covariance = {}; // where the uncertainty is known
     DepthOptions depth;             // what was wanted of it

@@ -1,6 +1,8 @@
 #include "photo/solve.hpp"
 
 #include "common/reason.hpp"
+#include "common/thin.hpp"
+#include "photo/light.hpp"
 #include "photo/trust.hpp"
 
 #include <chrono>
@@ -32,16 +34,20 @@ cv::Mat spanned(const cv::Mat &inliers, const cv::Mat &mask)
     return region;
 }
 
-void add_uncertainty(const ofc_image &image, Result &result)
+// What only numbers are made of needs no more pixels of a large picture.
+constexpr std::size_t most_for_numbers = 4000000;
+
+void add_uncertainty(const Picture &picture, const cv::Mat &inliers, Result &result)
 {
+    const ofc_image image = picture.view();
     const ofc_solution &s = result.solution;
-    result.uncertainty.create(result.normals.size(), CV_32F);
+    result.uncertainty.create(picture.size(), CV_32F);
     const ofc_status known = timed(result, "uncertainty", [&] {
         return ofc_normals_uncertainty(&image, &s, result.uncertainty.ptr<float>(), result.uncertainty.step);
     });
     if (known == OFC_STATUS_OK && ofc_solution_covariance(&s, &result.covariance) == OFC_STATUS_OK) {
         result.uncertainty *= degrees(1);
-        result.uncertainty.setTo(std::nan(""), result.inliers == 0);
+        result.uncertainty.setTo(std::nan(""), inliers == 0);
     } else {
         // The direct method does not know how sure it is.
         result.uncertainty.release();
@@ -49,9 +55,13 @@ void add_uncertainty(const ofc_image &image, Result &result)
 }
 
 // The answer against its own picture.
-std::optional<ofc_check_result> check(const ofc_image &image, const Result &result)
+std::optional<ofc_check_result> check(const Picture &whole, const Result &result)
 {
-    const ofc_depth_map depth = result.surface.view();
+    const Picture picture = thinned(whole, most_for_numbers);
+    const ofc_image image = picture.view();
+    const int step = step_to(whole.size(), most_for_numbers);
+    const cv::Mat few = thin(result.surface.depth, step);
+    const ofc_depth_map depth = depth_map_of(few, result.surface.params.pixel_pitch * step);
     ofc::Workspace workspace(ofc_check_workspace_size(image.width, image.height));
     ofc_check_result found;
     const ofc_status status = ofc_check(&image, &result.solution, result.surface.integrated() ? &depth : nullptr,
@@ -61,7 +71,8 @@ std::optional<ofc_check_result> check(const ofc_image &image, const Result &resu
 
 } // namespace
 
-Result solve(const Picture &picture, const ofc_solve_params &params, const ShadowOption &shadows, const DepthOptions &depth)
+Result solve(const Picture &picture, const ofc_solve_params &params, const ShadowOption &shadows, const DepthOptions &depth,
+             bool uncertainty_of_each)
 {
     Result result;
     result.params = params;
@@ -69,26 +80,30 @@ Result solve(const Picture &picture, const ofc_solve_params &params, const Shado
     result.params.lmeds.saturation = picture.saturation;
     result.depth = depth;
     result.inliers = cv::Mat::zeros(picture.size(), CV_8U);
-    result.normals = cv::Mat::zeros(picture.size(), CV_32FC3);
     const ofc_image image = picture.view();
-    ofc::Workspace workspace(ofc_solve_workspace_size(image.width, image.height, &result.params));
+    std::optional<ofc::Workspace> workspace(ofc_solve_workspace_size(image.width, image.height, &result.params));
     result.status = timed(result, "solve", [&] {
-        return ofc_solve(&image, &result.params, workspace.data(), workspace.bytes(), result.inliers.data, &result.solution);
+        return ofc_solve(&image, &result.params, workspace->data(), workspace->bytes(), result.inliers.data, &result.solution);
     });
+    workspace.reset();
     if (result.status < 0)
         explain_refusal(image, result.params, result.solution);
     else
         result.shadows = shadows.in_words(result.params, result.solution);
     if (!result.solved())
         return result;
+    result.normals = cv::Mat::zeros(picture.size(), CV_32FC3);
     result.status = timed(result, "normals", [&] {
         return ofc_normals_compute(&image, &result.solution, result.normals.ptr<float>(), result.normals.step);
     });
-    add_uncertainty(image, result);
+    if (uncertainty_of_each)
+        add_uncertainty(picture, result.inliers, result);
+    else
+        add_uncertainty(thinned(picture, most_for_numbers), thin(result.inliers, step_to(picture.size(), most_for_numbers)), result);
     result.open_outline = open_outline(picture.mask, result.inliers, result.normals);
     if (depth.is_wanted)
         result.surface = integrate(result.normals, spanned(result.inliers, picture.mask), depth.params());
-    result.check = check(image, result);
+    result.check = check(picture, result);
     return result;
 }
 

@@ -1,5 +1,6 @@
 #include "photo/trust.hpp"
 
+#include "common/thin.hpp"
 #include "photo/text.hpp"
 
 #include <algorithm>
@@ -38,8 +39,12 @@ Shape shape(const Result &result)
 
 double quantile(const cv::Mat &values, double share)
 {
+    // A million values say as much as more.
+    constexpr std::size_t most = 1000000;
+    const cv::Mat few = thin(values, step_to(values.size(), most));
     std::vector<float> finite;
-    for (const float value : cv::Mat_<float>(values))
+    finite.reserve(few.total());
+    for (const float value : cv::Mat_<float>(few))
         if (std::isfinite(value))
             finite.push_back(value);
     if (finite.empty())
@@ -75,7 +80,7 @@ double error_as_a_whole(const Result &result)
 {
     double error = degrees(result.solution.confidence.error_rad);
     for (const Doubt &doubt : result.doubts)
-        error = std::hypot(error, doubt.degrees);
+        error = std::hypot(error, doubt.expected);
     return error;
 }
 
@@ -111,6 +116,6 @@ std::string trust(const Result &result)
 {
     std::string words = trust_without_doubts(result);
     for (const Doubt &doubt : result.doubts)
-        words += text("; %s (the normals would turn by %.1f degrees)", doubt.words.c_str(), doubt.degrees);
+        words += text("; %s (the normals would turn by %.1f degrees)", doubt.words.c_str(), doubt.turn);
     return words;
 }

@@ -1,8 +1,11 @@
 #include "photo/whole.hpp"
 
+#include "common/thin.hpp"
 #include "photo/text.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -36,6 +39,19 @@ cv::Mat enclosed(const Picture &picture)
     cv::findContours(shown > 0, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
     cv::drawContours(region, outlines, -1, cv::Scalar(255), cv::FILLED);
     return region;
+}
+
+bool has_direction(const ofc_surface_light &light)
+{
+    return cv::norm(cv::Vec3d(light.direction)) > 0;
+}
+
+// A light takes nothing away from a channel: where its color says so, beyond what noise does, there is no such light.
+bool has_color(const ofc_surface_light &light)
+{
+    const auto [least, most] = std::minmax_element(std::begin(light.color), std::end(light.color));
+    constexpr double noise = 0.05;
+    return *most > 0 && *least > -noise * *most;
 }
 
 } // namespace
@@ -84,8 +100,8 @@ void complete(Result &result, const Picture &picture, bool channels_are_lights)
 
 cv::Mat class_picture(const Whole &whole, cv::Rect part)
 {
-    const cv::Mat bytes = whole.classes(part);
-    cv::Mat map(part.size(), CV_8UC3, dark);
+    const cv::Mat bytes = thin(whole.classes(part), step_to(part.size(), most_drawn));
+    cv::Mat map(bytes.size(), CV_8UC3, dark);
     std::vector<int> counts;
     for (const Class &one : classes) {
         int count = 0;
@@ -126,14 +142,13 @@ std::vector<Line> summary(const Whole &whole)
     }
     std::vector<Line> lines = {{"surface", pixels}};
     for (const ofc_surface_light &light : whole.result.lights) {
-        if (light.direction[2] == 0 && light.direction[0] == 0 && light.direction[1] == 0)
+        if (!has_direction(light))
             continue;
         const double tilt = degrees(std::atan2(light.direction[1], light.direction[0]));
         const double slant = degrees(std::acos(std::min(1.0, light.direction[2])));
         std::string line = text("tilt %7.2f  slant %5.2f", tilt, slant);
-        line += light.color[0] == 0 && light.color[1] == 0 && light.color[2] == 0
-                    ? "  color not known: its shadow is interpolated"
-                    : text("  color %5.1f %5.1f %5.1f", light.color[0], light.color[1], light.color[2]);
+        line += has_color(light) ? text("  color %5.1f %5.1f %5.1f", light.color[0], light.color[1], light.color[2])
+                                 : std::string("  color not known: its shadow is interpolated");
         lines.push_back({lines.size() == 1 ? "lights" : "", line});
     }
     if (lines.size() == 1)
@@ -150,8 +165,10 @@ nlohmann::ordered_json report(const Whole &whole)
     report["pixels"]["mirror image doubtful"] = cv::countNonZero(whole.classes & OFC_SURFACE_DOUBTFUL);
     const char *const sources[] = {"not known", "directions", "search", "rejected"};
     for (const ofc_surface_light &light : whole.result.lights)
-        if (cv::norm(cv::Vec3d(light.direction)) > 0)
-            lights.push_back({{"direction", light.direction}, {"color", light.color}, {"color_from", sources[light.dual_source & 3]}});
+        if (has_direction(light))
+            lights.push_back({{"direction", light.direction},
+                              {"color", has_color(light) ? nlohmann::ordered_json(light.color) : nullptr},
+                              {"color_from", sources[has_color(light) ? light.dual_source & 3 : 0]}});
     report["lights"] = lights;
     report["border_gap_deg"] = degrees(whole.result.border_gap_rad);
     report["regions"] = whole.result.regions;

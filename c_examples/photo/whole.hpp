@@ -11,7 +11,7 @@
 // pixels that are not black enclose.
 void complete(Result &result, const Picture &picture, bool channels_are_lights);
 
-// A part of the classes in colors, beside a legend with the share of each.
+// A part of the classes in colors, beside a legend with the share of each; of a large one fewer pixels.
 cv::Mat class_picture(const Whole &whole, cv::Rect part);
 
 // The lights that were found and the pixels of each class, in words.

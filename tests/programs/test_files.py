@@ -1,5 +1,6 @@
 """ofc_photo and ofc_integrate with files as they are on people's disks."""
 
+import csv
 import json
 import os
 import pty
@@ -301,6 +302,7 @@ class Results(Case):
         p.png(self.folder / "egg.png", p.bytes_of(self.light))
         p.png(self.folder / "map.png", p.map_of(self.normals, self.mask, np.uint16))
         self.out = self.folder / "out"
+        shutil.rmtree(self.out, ignore_errors=True)
 
     def left(self):
         return sorted(f.name for f in self.out.iterdir()) if self.out.exists() else []
@@ -326,6 +328,79 @@ class Results(Case):
             (self.out / name).unlink()
         shutil.copy(self.folder / "map.png", self.out / "depth.png")
         self.run_program("ofc_integrate", self.out / "depth.png", "--out", self.out, status=2)
+
+    def test_files_of_others_stay(self):
+        self.out.mkdir()
+        own = b"a picture of my own"
+        (self.out / "depth.png").write_bytes(own)
+        for program, good in ("ofc_photo", "egg.png"), ("ofc_integrate", "map.png"):
+            self.assertIn("depth.png is there", self.run_program(program, good, "--out", self.out, status=2))
+            self.assertEqual(self.left(), ["depth.png"])
+        for _ in range(2):
+            self.run_program("ofc_photo", "egg.png", "--outputs", "normals", "--out", self.out)
+        self.run_program("ofc_photo", "no-such-file.png", "--outputs", "normals", "--out", self.out, status=2)
+        self.assertEqual((self.out / "depth.png").read_bytes(), own)
+        self.assertEqual(self.left(), ["depth.png"])
+        for report in b"{}", b"[1]", b'{"program": "of others", "files": ["depth.png"]}', b"not JSON":
+            (self.out / "report.json").write_bytes(report)
+            self.run_program("ofc_photo", "egg.png", *QUICK, "--out", self.out, status=2)
+            self.assertEqual((self.out / "report.json").read_bytes(), report)
+        self.assertEqual((self.out / "depth.png").read_bytes(), own)
+
+    def test_one_program_removes_what_another_left_and_reads_it_before(self):
+        self.photo("egg.png", "--outputs", "normals,inliers,depth", quick=False)
+        self.integrate(self.out / "normals.tiff")
+        self.assertEqual(self.left(), ["depth.png", "depth.tiff", "mesh.ply", "mesh.png", "normals.tiff", "report.json"])
+        self.photo("egg.png")
+        self.assertEqual(self.left(), ["inliers.png", "normals.png", "normals.tiff", "report.json"])
+
+    def test_several_pictures_have_a_folder_each_and_a_table(self):
+        several = self.folder / "several"
+        several.mkdir()
+        for name in "one.png", "two.png":
+            shutil.copy(self.folder / "egg.png", several / name)
+        (several / "notes.txt").write_text("no picture")
+        said = self.run_program("ofc_photo", "several", "egg.png", *QUICK, "--out", self.out)
+        self.assertIn("egg.png: solved", said)
+        self.assertEqual(self.left(), ["egg", "one", "report.json", "summary.csv", "two"])
+        self.photo("egg.png")
+        alone = (self.out / "normals.tiff").read_bytes()
+        shutil.rmtree(self.out)
+        p.png(several / "two.png", np.full((p.HEIGHT, p.WIDTH, 3), 90, np.uint8))
+        (several / "cut.png").write_bytes((several / "one.png").read_bytes()[:1000])
+        self.run_program("ofc_photo", "several", *QUICK, "--out", self.out, status=1)
+        with open(self.out / "summary.csv", newline="") as file:
+            rows = {Path(row["picture"]).name: row for row in csv.DictReader(file)}
+        self.assertEqual({name: row["status"] for name, row in rows.items()}, {"cut.png": "2", "one.png": "0", "two.png": "1"})
+        self.assertIn("cut", rows["cut.png"]["in_words"])
+        self.assertGreater(float(rows["one.png"]["expected_error_deg"]), 0)
+        self.assertEqual((self.out / "one/normals.tiff").read_bytes(), alone)
+        self.assertFalse((self.out / "cut").exists())
+
+    def test_what_is_printed(self):
+        for arguments in [], ["egg.png"]:
+            self.assertEqual(self.run_program("ofc_photo", *arguments, "--quiet", *QUICK, "--out", self.out), "")
+        report = json.loads(self.run_program("ofc_photo", "egg.png", "--json", "-", *QUICK, "--out", self.out))
+        self.assertEqual(report, json.loads((self.out / "report.json").read_text()))
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([BIN / "ofc_photo", "egg.png", "--json", "-", *QUICK, "--out", self.out], cwd=self.folder, stdout=full, stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 1)
+
+    def test_frames_are_read_as_pictures_are(self):
+        frames = self.folder / "frames"
+        frames.mkdir()
+        gray = np.full((60, 80, 3), 120, np.uint8)
+        p.jpeg(frames / "0.jpg", gray, 6)
+        p.png(frames / "1.png", np.full((80, 60, 4), [120, 120, 120, 255], np.uint8))
+        self.run_program("ofc_live", "frames", "--out", self.out, status=1)
+        self.assertEqual(self.left(), ["contacts.csv", "live.avi", "report.json"])
+        p.png(frames / "2.png", gray)
+        self.assertIn("frame 2 is 80 x 60, the first one 60 x 80", self.run_program("ofc_live", "frames", "--out", self.out, status=2))
+        self.assertEqual(self.left(), [])
+        p.png(frames / "2.png", gray.astype(np.uint16))
+        self.assertIn("8 bits", self.run_program("ofc_live", "frames", "--out", self.out, status=2))
+        (frames / "2.png").write_bytes((frames / "1.png").read_bytes()[:60])
+        self.assertIn("2.png", self.run_program("ofc_live", "frames", "--out", self.out, status=2))
 
     def test_a_file_that_cannot_be_written_leaves_nothing(self):
         # As on a full disk: no file may be longer than so many bytes.
