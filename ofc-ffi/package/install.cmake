@@ -7,6 +7,10 @@ install(FILES "${ofc_archive}" DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT d
 if(ofc_shared)
   install(FILES "${ofc_shared}" "${ofc_lib}/libofc.so.${ofc_abi}"
     DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT runtime)
+  if(OFC_HWCAPS)
+    install(FILES "${ofc_lib}/${ofc_wide}/libofc.so.${PROJECT_VERSION}" "${ofc_lib}/${ofc_wide}/libofc.so.${ofc_abi}"
+      DESTINATION "${CMAKE_INSTALL_LIBDIR}/${ofc_wide}" COMPONENT runtime)
+  endif()
   install(FILES "${ofc_lib}/libofc.so" DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
 endif()
 

@@ -1,5 +1,5 @@
 # As Debian packages, which lintian looks at: normals.c is README's program. Unpacked here instead of installed.
-cmake -S "$clone" -B build -DCMAKE_INSTALL_PREFIX=/usr
+cmake -S "$clone" -B build -DCMAKE_INSTALL_PREFIX=/usr -DOFC_HWCAPS=$([ "$(uname -m)" = x86_64 ] && echo ON || echo OFF)
 cmake --build build
 (cd build && cpack)
 lintian --allow-root --fail-on error,warning build/*.deb
