@@ -6,4 +6,5 @@ pub mod depth;
 pub mod normals;
 mod rows;
 pub mod uncertainty;
+mod unit_normals;
 pub mod wolff;

@@ -256,10 +256,11 @@ fn read_pixels(channels: [&[u8]; 3], stride: usize, len: usize, window: &mut Win
 
 /// Every `stride` bytes one sample, as many as `out` holds.
 fn read_samples<const N: usize>(bytes: &[u8], stride: usize, out: &mut [f32], load: impl Fn([u8; N]) -> f32) {
-    for (pixel, out) in bytes.chunks(stride.max(1)).zip(out) {
-        if let Some(&sample) = pixel.first_chunk::<N>() {
-            *out = load(sample);
-        }
+    let mut rest = bytes;
+    for value in out {
+        let Some(sample) = rest.first_chunk() else { return };
+        *value = load(*sample);
+        rest = rest.get(stride..).unwrap_or_default();
     }
 }
 

@@ -27,7 +27,7 @@ impl State {
         self.check(row)?;
         let inliers = &self.solution.inliers;
         let (f_inverse, width) = (&orientation.f_inverse, self.width);
-        normals::compute(row, |window| inliers.bits(window), f_inverse, Length::Unit, normals, 3 * width)
+        normals::compute_each(row, |window| inliers.bits(window), f_inverse, normals, 3 * width)
             .map_err(|_| StreamError::TooShort)
     }
 

@@ -30,9 +30,28 @@ pub(super) fn write<const N: usize>(
     out: &mut [f32],
     row_stride: usize,
 ) -> Result<(), TooShort> {
-    let written = picture::rows::write(image, out, row_stride, |window, out| {
+    let none = |_: &Window, bits, out: &mut [[f32; N]]| {
         out.fill([nothing; N]);
-        for_each_bit(inliers(window), |i| {
+        bits
+    };
+    write_windows(image, inliers, none, value, out, row_stride)
+}
+
+/// [`write`], where `many` writes the numbers of a window, given the bits of its inliers, and returns the bits of those that it
+/// leaves to `value`.
+///
+/// # Errors
+/// [`TooShort`]; nothing is written then.
+pub(super) fn write_windows<const N: usize>(
+    image: &Image,
+    inliers: impl Fn(&Window) -> u64,
+    many: impl Fn(&Window, u64, &mut [[f32; N]]) -> u64,
+    value: impl Fn([f32; 3]) -> [f32; N],
+    out: &mut [f32],
+    row_stride: usize,
+) -> Result<(), TooShort> {
+    let written = picture::rows::write(image, out, row_stride, |window, out| {
+        for_each_bit(many(window, inliers(window), out), |i| {
             if let Some(slot) = out.get_mut(i) {
                 *slot = value(window.pixel(i));
             }
