@@ -441,7 +441,8 @@ typedef struct ofc_lmeds_params {
     /// Exactly this many subsets are drawn, up to 10,000,000; with 0, as many as `confidence` and `outlier_ratio` ask
     /// for. Default 0.
     uint32_t subsets;
-    /// How many pixels the search uses, at least 12; the result is evaluated on all pixels. Default 10,000.
+    /// How many pixels the search uses, at least 12; of a larger picture up to three times as many decide where it ends, and
+    /// the result is evaluated on all pixels. Default 10,000.
     uint32_t sample_size;
     ofc_fit_method method;   ///< One of OFC_FIT_*. Default OFC_FIT_LEAST_MEDIAN.
     ofc_weighting weighting; ///< One of OFC_WEIGHTING_*. Default OFC_WEIGHTING_AUTO.

@@ -6,6 +6,7 @@
 //! one that it is about by [`transfer`], [`dark`] and [`flat_field`]; [`saturation`] finds where it was clipped.
 
 pub mod cells;
+mod colors;
 pub mod dark;
 mod faces;
 pub mod flat_field;
@@ -27,6 +28,7 @@ pub use pixels::Pixels;
 pub use usable::{PixelCounts, Usable};
 pub use window::{WINDOW, Window, for_each_bit};
 
+pub(crate) use colors::{Colors, stretches};
 pub(crate) use faces::distance;
 pub(crate) use pixels::{second_differences, sum_second_differences};
-pub(crate) use window::first_bits;
+pub(crate) use window::{first_bits, packed};

@@ -68,11 +68,7 @@ pub fn solve(image: &Image, params: &Params, workspace: &mut [f32]) -> Result<So
     let usable = params.usable(image);
     let mut solution = Solution::new(usable.count(image), usable);
     // Step 1: C, the outliers, and the colors that a light does not reach.
-    let regression = lmeds::fit_counted(image, usable, &solution.pixel_counts, &params.lmeds, workspace)
-        .map(|fit| solution.fit = Some(fit));
-    if regression.is_ok() && params.rejects_shadows() {
-        solution.reject_shadows_of(image, params, workspace);
-    }
+    let regression = solution.fit_lit(image, params, workspace);
     solution.take_regression(image, regression, params.lmeds.method)?;
     // Step 2: the lengths of the rows of F, and the angles between them.
     match solution.model(params.lmeds.method) {

@@ -50,7 +50,7 @@ impl Band {
         Self { form, low: low * low, high: high * high }
     }
 
-    fn contains(&self, [r, g, b]: [f32; 3]) -> bool {
+    pub(crate) fn contains(&self, [r, g, b]: [f32; 3]) -> bool {
         let value = quadratic_form(&self.form, r, g, b);
         value >= self.low && value <= self.high
     }

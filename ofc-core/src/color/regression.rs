@@ -8,8 +8,11 @@
 //! Detection", Wiley 1987, chapter 2.
 
 mod errors;
+mod lanes;
 
 pub use errors::{Triangle, add_square, whole};
+
+pub(crate) use lanes::WindowMoments;
 
 use crate::color::ellipsoid::{Coefficients, matrix};
 use crate::math::mat6::{self, Mat6};

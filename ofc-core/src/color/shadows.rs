@@ -16,7 +16,7 @@ use super::lmeds::{Fit, Problem};
 use super::second_moments::SecondMoments;
 use crate::math::mat3;
 use crate::math::rng::Rng;
-use crate::picture::{Face, Faces, MAX_FACES, Pixels, distance, for_each_bit};
+use crate::picture::{Face, Faces, MAX_FACES, Pixels, WINDOW, distance, for_each_bit, packed, stretches};
 use libm::{fabsf, sqrt};
 
 // The numbers below are multiples of the noise or shares of the colors. "By trial" says that no formula gives a number: it was
@@ -68,12 +68,14 @@ const ROUNDS: usize = 3;
 /// # Scratch
 /// The longer, the more colors are looked at: 3072 `f32` are used at most. Two passes over the pixels.
 pub(crate) fn find<P: Pixels>(problem: &Problem<P>, fit: &Fit, workspace: &mut [f32]) -> Option<Faces> {
-    let (room, _) = workspace.as_chunks_mut::<3>();
-    let stride = 1 + problem.count.checked_div(room.len().min(SAMPLE))?;
-    let colors = room.get_mut(..problem.count.checked_div(stride)?)?;
+    let stride = 1 + problem.count.checked_div((workspace.len() / 3).min(SAMPLE))?;
+    let len = problem.count.checked_div(stride)?;
+    let (red, rest) = workspace.split_at_mut_checked(len)?;
+    let (green, rest) = rest.split_at_mut_checked(len)?;
+    let blue = rest.get_mut(..len)?;
     let inliers = Inliers { residual: fit.band, ..Inliers::all(problem.usable) };
     // Outliers come from the front, the others from the back.
-    let (mut front, mut back, mut number) = (0, colors.len(), 0_usize);
+    let (mut front, mut back, mut number) = (0, len, 0_usize);
     problem.pixels.for_each_window(|window| {
         let inside = inliers.bits(window);
         for_each_bit(problem.usable.bits(window), |i| {
@@ -88,18 +90,17 @@ pub(crate) fn find<P: Pixels>(problem: &Problem<P>, fit: &Fit, workspace: &mut [
                 front += 1;
                 front - 1
             };
-            if let Some(slot) = colors.get_mut(slot) {
-                *slot = window.pixel(i);
+            if let (Some(r), Some(g), Some(b)) = (red.get_mut(slot), green.get_mut(slot), blue.get_mut(slot))
+            {
+                [*r, *g, *b] = window.pixel(i);
             }
         });
     });
     if front != back {
         return None;
     }
-    let size: f64 = colors.as_flattened().iter().map(|&value| f64::from(value) * f64::from(value)).sum();
-    let exact = EXACT * sqrt(size / colors.len().max(1) as f64);
-    let noise = fit.noise_deviation.max(exact) as f32;
-    let shadows = Search { colors, outliers: front, noise }.faces(problem.params.seed);
+    let search = Search::new([red, green, blue], front, fit.noise_deviation);
+    let shadows = search.faces(problem.params.seed);
     (shadows != Faces::NONE).then_some(shadows)
 }
 
@@ -126,19 +127,21 @@ pub(crate) fn confirmed<P: Pixels>(shadows: &Faces, problem: &Problem<P>, band: 
     (confirmed != Faces::NONE).then_some(confirmed)
 }
 
-/// Colors, the outliers first.
+/// Colors, channels apart, the outliers first.
 struct Search<'w> {
-    colors: &'w mut [[f32; 3]],
+    channels: [&'w [f32]; 3],
     outliers: usize,
     noise: f32,
+    /// Of all colors.
+    sum: [f64; 3],
 }
 
 /// How colors lie about a plane.
 #[derive(Clone, Copy, Default)]
 struct Layers {
-    near: u16,
-    beside: u16,
-    beyond: u16,
+    near: u32,
+    beside: u32,
+    beyond: u32,
 }
 
 impl Layers {
@@ -156,7 +159,34 @@ impl Layers {
     }
 }
 
-impl Search<'_> {
+impl<'w> Search<'w> {
+    fn new(channels: [&'w [f32]; 3], outliers: usize, noise: f64) -> Self {
+        let mut search = Self { channels, outliers, noise: 0.0, sum: [0.0; 3] };
+        let (sum, size) = search
+            .colors()
+            .map(|color| color.map(f64::from))
+            .fold(([0.0; 3], 0.0), |([x, y, z], size), [r, g, b]| {
+                ([x + r, y + g, z + b], size + (r * r + g * g + b * b))
+            });
+        let exact = EXACT * sqrt(size / search.len().max(1) as f64);
+        (search.sum, search.noise) = (sum, noise.max(exact) as f32);
+        search
+    }
+
+    fn len(&self) -> usize {
+        let [red, ..] = self.channels;
+        red.len()
+    }
+
+    fn colors(&self) -> impl Iterator<Item = [f32; 3]> {
+        let [red, green, blue] = self.channels;
+        red.iter().zip(green).zip(blue).map(|((&r, &g), &b)| [r, g, b])
+    }
+
+    fn color(&self, i: u32) -> [f32; 3] {
+        self.channels.map(|channel| channel.get(i as usize).copied().unwrap_or(0.0))
+    }
+
     fn faces(self, seed: u64) -> Faces {
         let mut rng = Rng::new(seed);
         let mut shadows = Faces::NONE;
@@ -174,9 +204,9 @@ impl Search<'_> {
         let mut best: Option<(f64, [f32; 3])> = None;
         for trial in 0..TRIALS {
             // Where they bend the ellipsoid enough, few shaded colors are outliers.
-            let from = if trial % 2 == 0 { self.outliers } else { self.colors.len() };
+            let from = if trial % 2 == 0 { self.outliers } else { self.len() };
             let Some(pair) = rng.distinct::<2>(from as u32) else { continue };
-            let [a, b] = pair.map(|i| self.colors.get(i as usize).copied().unwrap_or_default());
+            let [a, b] = pair.map(|i| self.color(i));
             if !(shadows.is_lit(a) && shadows.is_lit(b)) {
                 continue;
             }
@@ -189,7 +219,7 @@ impl Search<'_> {
             }
         }
         let (_, normal) = best?;
-        self.layers(normal, MAX_BEYOND)?.is_face(self.colors.len()).then_some(normal)
+        self.layers(normal, MAX_BEYOND)?.is_face(self.len()).then_some(normal)
     }
 
     /// The plane fitted to the colors near this one, if it holds more than `least` of them by itself, and its gain.
@@ -212,30 +242,25 @@ impl Search<'_> {
         if !(length > 0.0 && length.is_finite()) {
             return None;
         }
-        let sum = self
-            .colors
-            .iter()
-            .fold([0.0; 3], |[x, y, z], &[r, g, b]| [x + f64::from(r), y + f64::from(g), z + f64::from(b)]);
-        let sign = if mat3::dot(direction, sum) < 0.0 { -1.0 } else { 1.0 };
+        let sign = if mat3::dot(direction, self.sum) < 0.0 { -1.0 } else { 1.0 };
         Some(mat3::scale(direction, sign / length).map(|x| x as f32))
     }
 
     /// How the colors lie about the plane; `None` where more than this share are beyond it.
+    #[expect(clippy::needless_bitwise_bool, reason = "vector instructions do not branch")]
     fn layers(&self, normal: [f32; 3], beyond: f64) -> Option<Layers> {
-        let limit = beyond * self.colors.len() as f64;
+        let limit = beyond * self.len() as f64;
         let (near, beside, beyond) = (NEAR * self.noise, BESIDE * self.noise, -BEYOND * self.noise);
         let mut layers = Layers::default();
-        for &color in self.colors.iter() {
-            let distance = distance(normal, color);
-            if fabsf(distance) <= near {
-                layers.near += 1;
-            } else if distance > 0.0 && distance <= beside {
-                layers.beside += 1;
-            } else if distance < beyond {
-                layers.beyond += 1;
-                if f64::from(layers.beyond) > limit {
-                    return None;
-                }
+        for [red, green, blue] in stretches(self.channels) {
+            for ((&r, &g), &b) in red.iter().zip(green).zip(blue) {
+                let distance = distance(normal, [r, g, b]);
+                layers.near += u32::from(fabsf(distance) <= near);
+                layers.beside += u32::from((distance > near) & (distance <= beside));
+                layers.beyond += u32::from(distance < beyond);
+            }
+            if f64::from(layers.beyond) > limit {
+                return None;
             }
         }
         Some(layers)
@@ -244,9 +269,16 @@ impl Search<'_> {
     /// The normal of the plane through black that is nearest to the colors near this one.
     fn fitted(&self, normal: [f32; 3]) -> [f64; 3] {
         let mut moments = SecondMoments::default();
-        for color in self.colors.iter().filter(|color| fabsf(distance(normal, **color)) <= NEAR * self.noise)
-        {
-            moments.add(color.map(f64::from));
+        let near = NEAR * self.noise;
+        for [red, green, blue] in stretches(self.channels) {
+            let mut is_near = [0; WINDOW];
+            for (((is_near, &r), &g), &b) in is_near.iter_mut().zip(red).zip(green).zip(blue) {
+                *is_near = u8::from(fabsf(distance(normal, [r, g, b])) <= near);
+            }
+            for_each_bit(packed(&is_near, 0), |i| {
+                let color = [red, green, blue].map(|channel| channel.get(i).copied().unwrap_or(0.0));
+                moments.add(color.map(f64::from));
+            });
         }
         let [.., least] = mat3::symmetric_eigen(&moments.sum()).vectors;
         least
@@ -255,7 +287,7 @@ impl Search<'_> {
     /// The face, with the margin that the noise on its other side asks for.
     fn face(&self, normal: [f32; 3]) -> Face {
         let (mut squares, mut count) = (0.0, 0);
-        for &color in self.colors.iter() {
+        for color in self.colors() {
             let distance = distance(normal, color);
             if distance <= 0.0 && distance >= -BEYOND * self.noise {
                 squares += f64::from(distance) * f64::from(distance);

@@ -180,6 +180,9 @@ impl<'a> Image<'a> {
         if let (Sample::U8, 3 | 4) = (self.sample, self.pixel_stride) {
             return read_pixels(channels, self.pixel_stride, len, window);
         }
+        if let (Sample::F32, FLOATS) = (self.sample, self.pixel_stride) {
+            return read_floats(channels, len, window);
+        }
         for (bytes, out) in channels.iter().zip(&mut window.color) {
             let out = out.get_mut(..len).unwrap_or_default();
             match self.sample {
@@ -251,6 +254,25 @@ fn read_pixels(channels: [&[u8]; 3], stride: usize, len: usize, window: &mut Win
             // A number below 256 is one with a sign, which vector instructions convert.
             *value = (word >> shift & 255).cast_signed() as f32;
         }
+    }
+}
+
+/// Bytes of a pixel of three floats.
+const FLOATS: usize = 12;
+
+/// Pixels of three floats, `len` of them at most, all channels at once.
+fn read_floats(channels: [&[u8]; 3], len: usize, window: &mut Window) {
+    let [red, _, blue] = channels;
+    let [first, second, third] = &mut window.color;
+    let (pixels, first, third) =
+        if red.len() >= blue.len() { (red, first, third) } else { (blue, third, first) };
+    let out = first.iter_mut().zip(second).zip(third).take(len);
+    for (&[a, b, c, d, e, f, g, h, i, j, k, l], ((first, second), third)) in
+        pixels.as_chunks::<FLOATS>().0.iter().zip(out)
+    {
+        *first = f32::from_ne_bytes([a, b, c, d]);
+        *second = f32::from_ne_bytes([e, f, g, h]);
+        *third = f32::from_ne_bytes([i, j, k, l]);
     }
 }
 

@@ -28,19 +28,16 @@ impl Usable {
 
     /// The bits of `window`'s pixels that are usable but for shadows.
     #[must_use]
+    #[expect(clippy::needless_bitwise_bool, reason = "vector instructions do not branch")]
     #[inline(never)]
     pub fn exposed(&self, window: &Window) -> u64 {
-        // Floats are in the order of their bits as integers with a sign, but for negative ones, and what is not finite
-        // has the largest bits of its sign.
-        const NEGATIVE_INFINITY: u32 = f32::NEG_INFINITY.to_bits();
-        let limit = if self.saturation > 0.0 { self.saturation.to_bits() } else { 0 };
         window.masked
             & window.bits(|r, g, b| {
-                let colors = [r, g, b].map(f32::to_bits);
-                let [r, g, b] = colors.map(u32::cast_signed);
-                let largest = r.max(g).max(b);
-                let [r, g, b] = colors;
-                (largest > 0) & (largest < limit.cast_signed()) & (r.max(g).max(b) < NEGATIVE_INFINITY)
+                let brighter = if r > g { r } else { g };
+                let largest = if brighter > b { brighter } else { b };
+                // Zero times what is not finite is no number.
+                let zero = 0.0 * r + 0.0 * g + 0.0 * b;
+                (zero == 0.0) & (largest > 0.0) & (largest < self.saturation)
             })
     }
 

@@ -42,22 +42,57 @@ impl Window {
         }
     }
 
+    /// The channels of the pixels `bits`, times `scale`; zero elsewhere.
+    pub(crate) fn only(&self, bits: u64, scale: f32) -> [[f32; WINDOW]; 3] {
+        const HALF: usize = WINDOW / 2;
+        let mut color = [[0.0; WINDOW]; 3];
+        for (channel, out) in self.color.iter().zip(&mut color) {
+            let halves = channel.as_chunks::<HALF>().0.iter().zip(out.as_chunks_mut::<HALF>().0);
+            for ((half, out), bits) in halves.zip([bits as u32, (bits >> HALF) as u32]) {
+                for (i, (value, out)) in half.iter().zip(out).enumerate() {
+                    *out = if bits & 1 << i == 0 { 0.0 } else { value * scale };
+                }
+            }
+        }
+        color
+    }
+
     /// A bit a pixel, set where `holds` says so of its color; bits beyond `len` mean nothing.
     #[inline]
     pub fn bits(&self, mut holds: impl FnMut(f32, f32, f32) -> bool) -> u64 {
-        // Halves, because a bit of 32 is made where a color of 32 bits is compared.
-        const HALF: usize = WINDOW / 2;
-        let [red, green, blue] = self.color.each_ref().map(|channel| channel.as_chunks::<HALF>().0);
-        let mut bits = 0;
-        for (k, ((red, green), blue)) in red.iter().zip(green).zip(blue).enumerate() {
-            let mut half = 0_u32;
-            for (i, ((&r, &g), &b)) in red.iter().zip(green).zip(blue).enumerate() {
-                half |= u32::from(holds(r, g, b)) << i;
-            }
-            bits |= u64::from(half) << (k * HALF);
-        }
+        let [bits] = self.flags(|[r, g, b]| u8::from(holds(r, g, b)));
         bits
     }
+
+    /// A bit a pixel for each of the first flags that `flags` says of its color, the lowest one first; bits beyond `len` mean nothing.
+    #[inline]
+    pub(crate) fn flags<const N: usize>(&self, mut flags: impl FnMut([f32; 3]) -> u8) -> [u64; N] {
+        let [red, green, blue] = &self.color;
+        let mut bytes = [0_u8; WINDOW];
+        for (((byte, &r), &g), &b) in bytes.iter_mut().zip(red).zip(green).zip(blue) {
+            *byte = flags([r, g, b]);
+        }
+        let mut flag = 0;
+        [(); N].map(|()| {
+            flag += 1;
+            packed(&bytes, flag - 1)
+        })
+    }
+}
+
+/// Bit `flag` of every byte. Bytes are what vector instructions narrow comparisons to, and a product gathers the bits of eight: no two
+/// of its terms meet.
+#[inline(never)]
+pub(crate) fn packed(bytes: &[u8; WINDOW], flag: u32) -> u64 {
+    const LOWEST: u64 = 0x0101_0101_0101_0101;
+    const GATHER: u64 = 0x0102_0408_1020_4080;
+    let (mut bits, mut place) = (0, 0);
+    for eight in bytes.as_chunks::<8>().0 {
+        let flags = u64::from_le_bytes(*eight) >> flag & LOWEST;
+        bits |= (flags.wrapping_mul(GATHER) >> 56) << place;
+        place += 8;
+    }
+    bits
 }
 
 /// The first `count` bits of a window.

@@ -14,7 +14,7 @@ use super::search::Sample;
 use crate::color::ellipsoid::is_positive_definite;
 use crate::color::inliers::Inliers;
 use crate::math::rng::Rng;
-use crate::picture::{self, Image, Pixels, Usable, WINDOW, Window, for_each_bit};
+use crate::picture::{Colors, Image, Usable, for_each_bit};
 use libm::sqrt;
 
 /// Levels of a channel.
@@ -50,7 +50,9 @@ impl Problem<'_, Image<'_>> {
     ) -> Option<Fit> {
         let before = by_pixels.filter(|fit| is_positive_definite(&fit.z())).map_or(0.0, margin);
         let (counts, workspace) = workspace.split_at_mut_checked(CELLS)?;
-        if self.count_colors(counts) < CONCENTRATION {
+        let rows = self.pixels.sample_rows();
+        let part = Problem { pixels: &rows, ..*self };
+        if part.count_colors(counts) < CONCENTRATION {
             return None;
         }
         let mut rng = Rng::new(self.params.seed);
@@ -59,7 +61,7 @@ impl Problem<'_, Image<'_>> {
         let (green, rest) = rest.split_at_mut_checked(len)?;
         let (blue, rest) = rest.split_at_mut_checked(len)?;
         let scratch = rest.get_mut(..len)?;
-        let len = self.draw(counts, [&mut *red, &mut *green, &mut *blue], &mut rng);
+        let len = part.draw_by_colors(counts, [&mut *red, &mut *green, &mut *blue], &mut rng);
         let [red, green, blue] = [red.get_mut(..len)?, green.get_mut(..len)?, blue.get_mut(..len)?];
         let scratch = scratch.get_mut(..len)?;
         if len < FEWEST {
@@ -94,14 +96,11 @@ impl Problem<'_, Image<'_>> {
                 *count += 1.0;
             }
         });
-        let (sum, squares) = counts.iter().fold((0.0, 0.0), |(sum, squares), &count| {
-            (sum + f64::from(count), squares + f64::from(count) * f64::from(count))
-        });
-        squares / (sum * sum)
+        concentration(counts)
     }
 
     /// Draws scaled colors, each pixel with the weight count^-1/2, and returns how many there are.
-    fn draw(&self, counts: &[f32], channels: [&mut [f32]; 3], rng: &mut Rng) -> usize {
+    fn draw_by_colors(&self, counts: &[f32], channels: [&mut [f32]; 3], rng: &mut Rng) -> usize {
         let [red, green, blue] = channels;
         let total: f64 = counts.iter().map(|&count| sqrt(f64::from(count))).sum();
         let step = total / red.len() as f64;
@@ -121,50 +120,46 @@ impl Problem<'_, Image<'_>> {
     }
 
     /// Visits the scaled colors of the usable pixels, each with the number of its cell.
-    #[expect(clippy::cast_sign_loss, reason = "a channel below zero is of the lowest level")]
     fn for_each_color(&self, mut visit: impl FnMut(usize, [f32; 3])) {
         self.pixels.for_each_window(|window| {
             for_each_bit(self.usable.bits(window), |i| {
                 let color = window.pixel(i).map(|c| (f64::from(c) * self.scale) as f32);
-                let [r, g, b] = color.map(|value| usize::from((value * LEVELS as f32) as u8).min(LEVELS - 1));
-                visit((r * LEVELS + g) * LEVELS + b, color);
+                visit(cell(color), color);
             });
         });
     }
 }
 
+impl Sample<'_> {
+    /// Whether some color may be a majority: where those that were searched say no, no more need be counted.
+    pub(super) fn may_be_concentrated(&mut self) -> bool {
+        let ([red, green, blue], Some(counts)) = self.searched_with(CELLS) else { return true };
+        counts.fill(0.0);
+        for ((&r, &g), &b) in red.iter().zip(green).zip(blue) {
+            if let Some(count) = counts.get_mut(cell([r, g, b])) {
+                *count += 1.0;
+            }
+        }
+        concentration(counts) >= CONCENTRATION
+    }
+}
+
+/// The cell of a scaled color.
+#[expect(clippy::cast_sign_loss, reason = "a channel below zero is of the lowest level")]
+fn cell(color: [f32; 3]) -> usize {
+    let [r, g, b] = color.map(|value| usize::from((value * LEVELS as f32) as u8).min(LEVELS - 1));
+    (r * LEVELS + g) * LEVELS + b
+}
+
+/// The probability that two colors taken at random share a cell.
+fn concentration(counts: &[f32]) -> f64 {
+    let (sum, squares) = counts.iter().fold((0.0, 0.0), |(sum, squares), &count| {
+        (sum + f64::from(count), squares + f64::from(count) * f64::from(count))
+    });
+    squares / (sum * sum)
+}
+
 /// How many times its noise would make a degenerate scene look like this one.
 fn margin(fit: &Fit) -> f64 {
     fit.degenerate_noise_deviation / fit.noise_deviation
-}
-
-/// Colors of pixels from anywhere.
-struct Colors<'a> {
-    channels: [&'a [f32]; 3],
-    sample: picture::Sample,
-}
-
-impl Pixels for Colors<'_> {
-    fn for_each_window(&self, mut visit: impl FnMut(&Window)) {
-        let mut window = Window::new();
-        for start in (0..self.len()).step_by(WINDOW) {
-            window.len = (self.len() - start).min(WINDOW);
-            window.x = start;
-            window.masked = picture::first_bits(window.len);
-            for (out, channel) in window.color.iter_mut().zip(self.channels) {
-                for (out, value) in out.iter_mut().zip(channel.get(start..).unwrap_or_default()) {
-                    *out = *value;
-                }
-            }
-            visit(&window);
-        }
-    }
-
-    fn sample(&self) -> picture::Sample {
-        self.sample
-    }
-
-    fn len(&self) -> usize {
-        self.channels.first().map_or(0, |channel| channel.len())
-    }
 }

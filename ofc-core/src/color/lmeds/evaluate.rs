@@ -1,16 +1,17 @@
 //! From the z that was found to the fit: the objective over all pixels, and the rejection that follows from it.
 
+use super::bracketed::Bracket;
 use super::noise::noise;
 use super::params::Method;
 use super::problem::Problem;
+use super::rejection::Rejection;
 use super::result::{Fit, FitError};
 use super::reweighted::{Refit, covariance, deviations};
-use crate::color::dispersion::dispersion;
 use crate::color::ellipsoid::{Coefficients, quadratic_form};
-use crate::color::inliers::{Band, Inliers};
-use crate::color::regression::{Moments, TERMS};
+use crate::color::inliers::Inliers;
+use crate::color::regression::Moments;
 use crate::math::select::{kth_smallest, median_rank};
-use crate::picture::Pixels;
+use crate::picture::{Image, Pixels};
 use libm::fabs;
 
 impl<P: Pixels> Problem<'_, P> {
@@ -32,12 +33,24 @@ impl<P: Pixels> Problem<'_, P> {
         out: &mut Option<Fit>,
     ) -> Result<(), FitError> {
         let scaled = scaled.ok_or_else(|| self.rank_deficient())?;
-        let rejection = self.rejection(scaled.map(|c| c * self.scale * self.scale), workspace);
-        let inliers = Inliers { residual: rejection.band, ..Inliers::all(self.usable) };
-        let moments = self.moments(&inliers);
-        self.reweighted(&rejection, &inliers, &moments, out).ok_or_else(|| self.rank_deficient())?;
+        let robust = scaled.map(|c| c * self.scale * self.scale);
+        let rejection = self.rejection(robust, self.median_residual(&robust, workspace));
+        let moments = self.moments(&self.inliers(&rejection));
+        self.conclude::<ERRORS>(&rejection, &moments, workspace, out)
+    }
+
+    /// The fit that follows from a rejection and the sums over what it leaves.
+    fn conclude<const ERRORS: bool>(
+        &self,
+        rejection: &Rejection,
+        moments: &Moments,
+        workspace: &mut [f32],
+        out: &mut Option<Fit>,
+    ) -> Result<(), FitError> {
+        let inliers = self.inliers(rejection);
+        self.reweighted(rejection, &inliers, moments, out).ok_or_else(|| self.rank_deficient())?;
         if let (true, Some(fit)) = (ERRORS, out) {
-            fit.covariance = covariance(&moments, self.scale, fit);
+            fit.covariance = covariance(moments, self.scale, fit);
             fit.pixel_noise =
                 fit.pixel_noise.max(self.pixels.of_part(|part| noise(part, &inliers, &fit.z(), workspace)));
         }
@@ -50,25 +63,18 @@ impl<P: Pixels> Problem<'_, P> {
     /// # Scratch
     /// One `f32` a usable pixel.
     pub fn reweighted_z(&self, scaled: &Coefficients, workspace: &mut [f32]) -> Option<Coefficients> {
-        let rejection = self.rejection(scaled.map(|c| c * self.scale * self.scale), workspace);
-        let inliers = Inliers { residual: rejection.band, ..Inliers::all(self.usable) };
-        self.moments(&inliers).solve().map(|fit| fit.coefficients)
+        let robust = scaled.map(|c| c * self.scale * self.scale);
+        let rejection = self.rejection(robust, self.median_residual(&robust, workspace));
+        self.moments(&self.inliers(&rejection)).solve().map(|fit| fit.coefficients)
     }
 
-    /// What follows from the robust z alone.
-    fn rejection(&self, robust: Coefficients, workspace: &mut [f32]) -> Rejection {
-        let median_residual = self.median_residual(&robust, workspace);
-        let dispersion = dispersion(median_residual, self.count, TERMS);
-        let band = match self.params.method {
-            Method::LeastMedian => Band::residual(robust, dispersion, self.params.rejection),
-            Method::LeastSquares => Band { form: robust, ..Band::EVERYTHING },
-        };
-        Rejection { median_residual, dispersion, band }
+    pub(super) fn inliers(&self, rejection: &Rejection) -> Inliers {
+        Inliers { residual: rejection.band, ..Inliers::all(self.usable) }
     }
 
     /// The median absolute residual of the usable pixels.
     #[inline(never)]
-    fn median_residual(&self, z: &Coefficients, workspace: &mut [f32]) -> f64 {
+    pub(super) fn median_residual(&self, z: &Coefficients, workspace: &mut [f32]) -> f64 {
         let residual = |r, g, b| fabs(quadratic_form(z, r, g, b) - 1.0);
         let residuals = self.pixels.gather(Inliers::all(self.usable).selector(), workspace, residual);
         kth_smallest(residuals, median_rank(residuals.len())).map_or(0.0, f64::from)
@@ -122,9 +128,23 @@ impl<P: Pixels> Problem<'_, P> {
     }
 }
 
-/// Which residuals are too large, and the numbers that this follows from.
-struct Rejection {
-    median_residual: f64,
-    dispersion: f64,
-    band: Band,
+impl Problem<'_, Image<'_>> {
+    /// [`Self::evaluate`], in one pass where there is a bracket, and it is good; the count may then be an estimate.
+    pub fn evaluate_within<const ERRORS: bool>(
+        &self,
+        scaled: Option<Coefficients>,
+        bracket: Option<Bracket>,
+        workspace: &mut [f32],
+        out: &mut Option<Fit>,
+    ) -> Result<(), FitError> {
+        if let (Some(z), Some(bracket)) = (&scaled, bracket)
+            && let Some((count, rejection, moments)) = self.bracketed(z, bracket, workspace)
+        {
+            let counted = Problem { count, ..*self };
+            return counted.conclude::<ERRORS>(&rejection, &moments, workspace, out);
+        }
+        let is_exact = bracket.is_none();
+        let count = if is_exact { self.count } else { Inliers::all(self.usable).count(self.pixels) };
+        Problem { count, ..*self }.evaluate::<ERRORS>(scaled, workspace, out)
+    }
 }

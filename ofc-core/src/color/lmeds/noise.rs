@@ -10,11 +10,11 @@ use crate::color::dispersion::CONSISTENCY;
 use crate::color::ellipsoid::{Coefficients, matrix, quadratic_form};
 use crate::color::inliers::Inliers;
 use crate::math::mat3;
-use crate::math::select::{kth_smallest, median_rank};
+use crate::math::select::{median_rank, take_kth_smallest};
 use crate::picture::Pixels;
 use core::cell::Cell;
 use core::f64::consts::FRAC_1_SQRT_2;
-use libm::{fabs, sqrt};
+use libm::sqrt;
 
 /// Classes of |C rho|^2, four to an octave, from the largest: of what is sixteen octaves smaller nothing is cut off.
 const CLASSES: usize = 64;
@@ -36,15 +36,18 @@ pub(super) fn noise(pixels: &impl Pixels, inliers: &Inliers, z: &Coefficients, w
     let [c11, c22, c33, ..] = *z;
     let top = class(4.0 * (c11 + c22 + c33) * inliers.residual.high.max(1.0));
     let counts = [const { Cell::new(0_u32) }; CLASSES];
-    let ratios = pixels.gather(inliers.selector(), workspace, |r, g, b| {
+    // Squares, whose median is that of what they are squares of, take no root a pixel.
+    let squares = pixels.gather(inliers.selector(), workspace, |r, g, b| {
         let half = mat3::apply(&c, [r, g, b].map(f64::from));
         let slope = 4.0 * mat3::dot(half, half);
         if let Some(count) = counts.get(top.saturating_sub(class(slope)).min(CLASSES - 1)) {
             count.set(count.get() + 1);
         }
-        fabs(quadratic_form(z, r, g, b) - 1.0) / sqrt(slope.max(f64::MIN_POSITIVE))
+        let residual = quadratic_form(z, r, g, b) - 1.0;
+        residual * residual / slope.max(f64::MIN_POSITIVE)
     });
-    let median = kth_smallest(ratios, median_rank(ratios.len())).map_or(0.0, f64::from);
+    let rank = median_rank(squares.len());
+    let median = take_kth_smallest(squares, rank).map_or(0.0, |square| sqrt(f64::from(square)));
     let limit = 0.5 * (inliers.residual.high - inliers.residual.low);
     if !(median > 0.0 && limit.is_finite()) {
         return CONSISTENCY * median;

@@ -48,7 +48,8 @@ pub struct Params {
     pub min_subsets: u32,
     /// Exactly this many subsets, or 0 for the number that `confidence` and `outlier_share` ask for. Default 0.
     pub subsets: u32,
-    /// Pixels that the search looks at; all are looked at when there are fewer. Default 10,000.
+    /// Pixels that the search looks at; all are looked at when there are fewer. Of more, up to three times as many decide where it
+    /// ends, as the workspace holds them. Default 10,000.
     pub sample_size: u32,
     /// Fixes every random choice. Default 0.
     pub seed: u64,

@@ -39,37 +39,40 @@ impl<P: Pixels> Problem<'_, P> {
         let fit = moments.solve();
         let fit = fit.as_ref()?;
         let scale = self.scale;
-        let (residual_sum, smallest_step) =
-            self.residuals_and_steps(inliers, &fit.coefficients.map(|c| c * (scale * scale)));
+        let z = fit.coefficients.map(|c| c * (scale * scale));
+        let (mean_square, smallest_step) = self.pixels.of_part(|part| residuals_and_steps(part, inliers, &z));
+        let residual_sum = mean_square * f64::from(moments.count);
         let rounding = smallest_step * rounding::DEVIATION;
         Refit::new(moments, fit, scale, self.params.limits_confidence, residual_sum, rounding)
     }
+}
 
-    /// The sum of the squared residuals of the inliers; and the smallest difference in a channel between an inlier and the one
-    /// before it, other than none: how finely the picture is quantized, whatever the type of its pixels. Zero when there are no
-    /// differences.
-    #[inline(never)]
-    fn residuals_and_steps(&self, inliers: &Inliers, z: &Coefficients) -> (f64, f64) {
-        let (mut residual_sum, mut smallest, mut previous) = (0.0, f32::INFINITY, None);
-        self.pixels.for_each_window(|window| {
-            let mut sum = 0.0;
-            for_each_bit(inliers.bits(window), |i| {
-                let pixel = window.pixel(i);
-                let [r, g, b] = pixel;
-                let residual = quadratic_form(z, r, g, b) - 1.0;
-                sum += residual * residual;
-                for (now, before) in pixel.into_iter().zip(previous.unwrap_or(pixel)) {
-                    let step = fabsf(now - before);
-                    if step > 0.0 && step < smallest {
-                        smallest = step;
-                    }
+/// The mean of the squared residuals of the inliers; and the smallest difference in a channel between an inlier and the one
+/// before it, other than none: how finely the picture is quantized, whatever the type of its pixels. Zero when there are no
+/// differences.
+#[inline(never)]
+fn residuals_and_steps(pixels: &impl Pixels, inliers: &Inliers, z: &Coefficients) -> (f64, f64) {
+    let (mut residual_sum, mut count, mut smallest, mut previous) = (0.0, 0_u32, f32::INFINITY, None);
+    pixels.for_each_window(|window| {
+        let (bits, mut sum) = (inliers.bits(window), 0.0);
+        for_each_bit(bits, |i| {
+            let pixel = window.pixel(i);
+            let [r, g, b] = pixel;
+            let residual = quadratic_form(z, r, g, b) - 1.0;
+            sum += residual * residual;
+            for (now, before) in pixel.into_iter().zip(previous.unwrap_or(pixel)) {
+                let step = fabsf(now - before);
+                if step > 0.0 && step < smallest {
+                    smallest = step;
                 }
-                previous = Some(pixel);
-            });
-            residual_sum += sum;
+            }
+            previous = Some(pixel);
         });
-        (residual_sum, if smallest.is_finite() { f64::from(smallest) } else { 0.0 })
-    }
+        residual_sum += sum;
+        count += bits.count_ones();
+    });
+    let mean = residual_sum / f64::from(count.max(1));
+    (mean, if smallest.is_finite() { f64::from(smallest) } else { 0.0 })
 }
 
 /// The root mean squares of colors along their principal axes, from the sums of them times `scale`, in pixel values.

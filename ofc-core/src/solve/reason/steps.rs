@@ -12,6 +12,8 @@ use libm::{fabs, log, sqrt};
 const NOISES: f64 = 6.0;
 /// A step is a ratio of the colors over three pixels that is at least this much, as a logarithm.
 const SMALLEST_STEP: f64 = 0.15;
+/// A ratio that is less than [`SMALLEST_STEP`] says: what is below it needs no logarithm.
+const SMALLEST_RATIO: f32 = 1.16;
 /// It is so many times what colors change by over two pixels on both sides of it.
 const SHARPNESS: f64 = 3.0;
 /// Steps that differ from the median by less than this share of it are the same.
@@ -97,6 +99,10 @@ fn for_each_step(
         }
         // Eight pixels side by side: the step is between the third and the sixth.
         for_each_bit(bits, |i| {
+            let (before, after) = (window.pixel(i + 2), window.pixel(i + 5));
+            if !before.into_iter().zip(after).any(|(a, b)| a.max(b) > SMALLEST_RATIO * a.min(b)) {
+                return;
+            }
             let logarithm = |j: usize| window.pixel(i + j).map(|value| log(f64::from(value)));
             let difference = |a: usize, b: usize| {
                 let ([r, g, b], [r2, g2, b2]) = (logarithm(a), logarithm(b));
@@ -104,8 +110,7 @@ fn for_each_step(
             };
             let size = |[r, g, b]: [f64; 3]| fabs(r).max(fabs(g)).max(fabs(b));
             let step = difference(2, 5);
-            let darkest =
-                [2, 5].map(|j| window.pixel(i + j)).into_iter().flatten().fold(f32::INFINITY, f32::min);
+            let darkest = before.into_iter().chain(after).fold(f32::INFINITY, f32::min);
             let noise = NOISES * noise / f64::from(darkest);
             let least =
                 noise.max(SMALLEST_STEP).max(SHARPNESS * size(difference(0, 2)).max(size(difference(5, 7))));
