@@ -12,6 +12,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -84,14 +85,24 @@ cv::Mat drawn(const cv::Mat &frame, const Touch &touch, const Sensor &sensor, do
     return all;
 }
 
-// Puts a video in its place, which says nothing of what could not be written: the frames are counted.
+// Whether an AVI, which is a row of chunks that each say how long they are, ends where the last of them does.
+bool is_whole(const std::filesystem::path &path)
+{
+    const std::uintmax_t size = std::filesystem::file_size(path);
+    std::ifstream file(path, std::ios::binary);
+    std::uintmax_t end = 0;
+    unsigned char head[8];
+    while (end < size && file.seekg(static_cast<std::streamoff>(end)).read(reinterpret_cast<char *>(head), sizeof head))
+        end += sizeof head + (head[4] | head[5] << 8 | head[6] << 16 | static_cast<std::uintmax_t>(head[7]) << 24);
+    return end == size && size > 0;
+}
+
+// Puts a video in its place, whose writer says nothing of what could not be written.
 void close(cv::VideoWriter &video, FileAside &file, int frames)
 {
     video.release();
-    const int written = static_cast<int>(cv::VideoCapture(file.path()).get(cv::CAP_PROP_FRAME_COUNT));
-    if (written != frames)
-        throw std::runtime_error("cannot write " + file.path().string() + ": it holds " + std::to_string(written) + " of " +
-                                 std::to_string(frames) + " frames");
+    if (!is_whole(file.path()) || static_cast<int>(cv::VideoCapture(file.path()).get(cv::CAP_PROP_FRAME_COUNT)) != frames)
+        throw std::runtime_error("cannot write all frames into " + file.path().string());
     file.finish();
 }
 

@@ -416,6 +416,22 @@ class Results(Case):
                 self.assertIn("cannot", said)
                 self.assertEqual(self.left(), [], f"{program}, {size} bytes")
 
+    def test_a_video_that_is_cut_is_an_error(self):
+        def limit(size):
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+        frames = self.folder / "video"
+        frames.mkdir()
+        for i in range(3):
+            p.png(frames / f"{i}.png", np.full((60, 80, 3), 120, np.uint8))
+        self.run_program("ofc_live", "video", "--out", self.out, status=1)
+        size = (self.out / "live.avi").stat().st_size
+        for most in size // 3, size - 1:
+            said = self.run_program("ofc_live", "video", "--out", self.out, status=1, preexec_fn=lambda most=most: limit(most))
+            self.assertIn("cannot write all frames", said)
+            self.assertEqual(self.left(), [])
+
     def test_output_that_no_one_takes_is_an_error(self):
         for arguments in ["egg.png", *QUICK], ["--help"], ["--version"]:
             with open("/dev/full", "w") as full:
