@@ -1568,9 +1568,8 @@ typedef int32_t ofc_stream_pass;
 #define OFC_PASS_TILTS 2  ///< A cold start estimates the tilts; with one candidate for the slants it finds F.
 #define OFC_PASS_SLANTS 3 ///< A cold start chooses among the candidates for the slants, and finds F.
 #define OFC_PASS_REFINE 4 ///< F has been found, and the frame refines it.
-/// A cold start with the joint method looks at how normals point outward; where the sample holds all pixels it finds F.
-#define OFC_PASS_OUTWARD 5
-#define OFC_PASS_INTEGRABILITY 6 ///< A cold start with the joint method looks at integrability, and finds F.
+/// A cold start with the joint method looks at integrability and at how normals point outward, and finds F.
+#define OFC_PASS_JOINT 5
 
 /// What the last frame of OFC_PASS_REFINE says about the model from before it.
 typedef struct ofc_stream_drift {
@@ -1615,13 +1614,13 @@ size_t ofc_stream_size(int32_t width, int32_t height, const ofc_stream_params *p
 ///     }
 ///     ofc_status status = ofc_stream_end(stream, &pass);
 ///
-/// A cold start begins with a pass over colors. With the joint method passes over outward normals and integrability
-/// follow; with the direct method a pass over tilts, and one over slants where eqs. 25 have several roots. All of them
+/// A cold start begins with a pass over colors. With the joint method one pass over outward normals and integrability
+/// follows; with the direct method a pass over tilts, and one over slants where eqs. 25 have several roots. All of them
 /// take the same frame, or consecutive frames of a scene at rest. Then F is known. A few rows of every further frame
 /// refine it; for the other rows ofc_stream_row() does next to nothing.
 ///
-/// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of as
-/// many windows as the memory holds. Where the sample holds all pixels, or with the direct method all usable pixels, and
+/// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of
+/// windows as small as the memory allows. Where the sample holds all pixels, or with the direct method all usable pixels, and
 /// there are fewer than 131,072 of them, above which ofc_solve() takes some numbers from a sample of the rows,
 /// the solution is equal to that of ofc_solve() bit by bit, but for the integral of a lone candidate, which is not
 /// computed (infinite), and but for `reason` and what follows from it: streams do not look for reasons. Without the

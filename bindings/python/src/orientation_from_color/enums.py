@@ -258,8 +258,7 @@ class Pass(enum.IntEnum):
     TILTS = 2
     SLANTS = 3
     REFINE = 4
-    OUTWARD = 5
-    INTEGRABILITY = 6
+    JOINT = 5
 
 
 class Transfer(enum.IntEnum):
