@@ -2319,6 +2319,47 @@ ofc_status ofc_rig_background_follow(const ofc_image *image, const ofc_relief_cl
                                      double rate, float *background, size_t background_stride_bytes);
 
 #define OFC_RIG_MODEL_BYTES 1368 ///< The bytes of a saved model.
+/// What was seen of a frame so far. Made by ofc_rig_rows_begin(); plain numbers, which may be copied.
+typedef struct ofc_rig_rows {
+    double sums[2]; ///< The sums of the columns and of the rows of the contact's pixels.
+    /// One over the color of the model's plane, for the row of cells that was last begun: red, green, blue.
+    float reciprocals[720];
+    int32_t bounds[4];   ///< The first and last column and row of the contact: left, top, right, bottom.
+    uint32_t contact[8]; ///< The cells of the contact in the row of cells that was last begun, a bit each.
+    uint32_t pixels;     ///< How many pixels the contact has.
+    int32_t rows;        ///< How many rows were seen.
+} ofc_rig_rows;
+
+/// Begins a frame whose rows come one after another.
+/// @param rows  Output: nothing was seen.
+/// @return OFC_STATUS_OK; an argument status.
+ofc_status ofc_rig_rows_begin(ofc_rig_rows *rows);
+
+/// Computes classes and normals of the next row of a frame, without memory for more than that row: with a model that ofc_rig_model_load() gave, for
+/// microcontrollers.
+///
+/// A cell, as wide as one of ofc_rig_classify() and one row high, is touched where it differs from the plane by more than noise together with both
+/// beside it. Rows above and below are not looked at: borders are less smooth than those of whole frames.
+/// @param model  The solved rig, read in place.
+/// @param rows  In and out: the frame so far, from ofc_rig_rows_begin().
+/// @param row  A picture of height 1: the row after the last one.
+/// @param background  The same row without a contact; NULL to take the plane that the model has, which is right where the frames that the
+///     model was made of were added without a background.
+/// @param classes  Output: width bytes, one of OFC_RELIEF_* for each pixel. NULL where they are not wanted.
+/// @param normals  Output: width (n1, n2, n3) floats: (0, 0, 1) on the plane, NaN where there is no usable color. NULL where they are not wanted.
+/// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH for a row that is not one of the model's width;
+///     OFC_STATUS_TOO_MANY_ROWS after the last one; an argument status.
+///
+/// Stack: below 4 KiB without a background, 5 KiB with one. Reference: docs/rig.md.
+ofc_status ofc_rig_row(const ofc_rig_model *model, ofc_rig_rows *rows, const ofc_image *row,
+                       const ofc_image *background, ofc_relief_class *classes, float *normals);
+
+/// Says what is pressed in, from the rows seen so far.
+/// @param rows  The rows.
+/// @param pixel_size  The length of a pixel on the gel, positive.
+/// @param contact  Output: area, center and bounds. Without depth nothing is known of peak and volume: they are NaN, and the place of the peak is -1, -1.
+/// @return OFC_STATUS_OK; OFC_STATUS_NO_RELIEF, with nothing written, where there is no contact; an argument status.
+ofc_status ofc_rig_rows_contact(const ofc_rig_rows *rows, double pixel_size, ofc_rig_contact *contact);
 
 /* ---- Segmentation, of pictures with several materials or light environments ------------------------------------- */
 

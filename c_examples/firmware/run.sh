@@ -12,6 +12,7 @@ cd "$(dirname "$0")/../.."
 here=c_examples/firmware
 out=target/firmware
 mkdir -p "$out"
+[ "${1-}" = --one ] || rm -f "$out/tactile.row"
 exceeded=()
 # A board, and a feature of the library after a plus.
 programs=(cortex-m7 cortex-m4f riscv32 cortex-m7+full-streams)
@@ -74,6 +75,23 @@ budget() {
     [ "$2" -le "$3" ] || exceeded+=("$1 $2 above $3")
 }
 
+# measure_tactile: builds and runs the sensor with a loaded model for the board and archive that were set last, and writes its row of the table.
+measure_tactile() {
+    local program=$out/tactile row="| tactile, $1" stage
+    "${compiler[@]}" -Oz "$here"/{tactile,gel,print}.c "${start[@]}" "$archive" -lgcc -o "$program.elf"
+    cannot_panic "$program.elf"
+    calls_are_known "$program.elf"
+    emulate "$program.elf" -icount shift=0 | tee "$program.txt"
+    row+=" | $(section "$program.elf" .text .rodata .data) | $(section "$program.elf" .data .bss)"
+    for stage in "stack call" "stack load" "instructions load" "instructions tactile"; do
+        # shellcheck disable=SC2086 # two words
+        row+=" | $(said "$program.txt" $stage)"
+    done
+    echo "$row |" >"$out/tactile.row"
+    budget "stack in a call with a model" "$(said "$program.txt" stack call)" 4096
+    budget "frame with a model" "$(said "$program.txt" instructions tactile)" 12000000
+}
+
 # measure BOARD[+FEATURE]: builds and runs the firmware, and writes its row of the table.
 measure() {
     local name=${1%%+*} feature="" program=$out/$1 flash ram stack row stage
@@ -99,6 +117,7 @@ measure() {
         budget "stack in a call" "$stack" 4096
         budget "cold solve" "$(said "$program.txt" instructions cold)" 100000000
         budget "warm frame" "$(said "$program.txt" instructions warm)" 8000000
+        measure_tactile "$1"
     fi
     if [ ${#exceeded[@]} -gt 0 ]; then
         printf 'over budget: %s\n' "${exceeded[@]}" >&2
@@ -129,6 +148,12 @@ table=$out/table.md
     for program in "${programs[@]}"; do
         cat "$out/$program.row"
     done
+    if [ -f "$out/tactile.row" ]; then
+        echo
+        echo "| | flash | RAM | stack in a call | stack to load | instructions to load | a frame |"
+        echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: |"
+        cat "$out/tactile.row"
+    fi
 } | tee "$table"
 if [ "${1-}" = --write ]; then
     awk -v table="$table" '

@@ -384,8 +384,9 @@ pub(crate) fn normals_writer<'a>(
     mut deviations: Option<(&'a mut [f32], usize)>,
 ) -> impl FnMut(usize, usize, [f32; 3], f32) + 'a {
     move |x, y, normal, deviation| {
-        for (slot, n) in normals.iter_mut().skip(y * stride + 3 * x).zip(normal) {
-            *slot = n;
+        let slot = normals.get_mut(y * stride + 3 * x..).and_then(<[f32]>::first_chunk_mut);
+        if let Some(slot) = slot {
+            *slot = normal;
         }
         if let Some((deviations, stride)) = &mut deviations
             && let Some(slot) = deviations.get_mut(y * *stride + x)

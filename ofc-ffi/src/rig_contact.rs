@@ -73,7 +73,7 @@ pub unsafe extern "C" fn ofc_rig_contact_measure(
 }
 
 /// Lengths and volumes stay finite.
-const LARGEST_PIXEL: f64 = 1e30;
+pub(crate) const LARGEST_PIXEL: f64 = 1e30;
 
 /// Moves a background toward a frame where the frame shows the untouched plane: a slow drift of the light and of the gel is followed, and the frames of
 /// a rig make their background themselves. A pixel that is NaN in the background takes the frame's color: begin with NaNs.

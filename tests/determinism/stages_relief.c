@@ -50,6 +50,24 @@ static void mix_model(const ofc_rig_model *model)
         mix_status(numbers[i]);
 }
 
+/* The frame row by row. */
+static void mix_rows(const ofc_rig_model *model, const ofc_image *image)
+{
+    static ofc_rig_rows rows;
+    ofc_rig_contact contact = {.area = 0};
+    ofc_image row = *image;
+    row.height = 1;
+    mix_status(ofc_rig_rows_begin(&rows));
+    for (int y = 0; y < DOWN; y++) {
+        row.pixels = (const uint8_t *)image->pixels + (size_t)y * image->row_stride_bytes;
+        mix_status(ofc_rig_row(model, &rows, &row, NULL, classes[0], found[0][0]));
+        mix_bytes(classes[0], ACROSS);
+        mix_floats(found[0][0], 3 * ACROSS);
+    }
+    mix_status(ofc_rig_rows_contact(&rows, 0.0625, &contact));
+    mix_doubles(&contact.area, 3);
+}
+
 /* The bump as the frame of a rig, and as a ball. */
 static void mix_rig(const ofc_image *image, const ofc_image *background, const ofc_relief_params *params)
 {
@@ -84,6 +102,7 @@ static void mix_rig(const ofc_image *image, const ofc_image *background, const o
     mix_doubles(&contact.area, 5);
     mix_status(ofc_rig_background_follow(image, classes[0], 0, 0.25, found[0][0], sizeof found[0]));
     mix_floats(found[0][0], 3 * ALL);
+    mix_rows(&model, image);
 }
 
 void mix_relief(void)

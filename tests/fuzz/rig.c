@@ -65,6 +65,24 @@ static void use(const ofc_rig_model *model)
         }
 }
 
+/* A frame row by row, which may have been begun or hold any numbers. */
+static void look(const ofc_rig_model *model)
+{
+    ofc_rig_rows *const rows = TAKE(ofc_rig_rows, 1);
+    uint8_t *const classes = take((size_t)width, 1);
+    float *const normals = TAKE(float, 3 * (size_t)width);
+    if (CALL(ofc_rig_rows_begin(BAD(rows, NULL)), rows) != OFC_STATUS_OK || one_in(4))
+        change(rows, sizeof *rows, 1 + below(8));
+    for (int i = 0; i < 3; i++) {
+        const struct picture frame = picture_sized(width, 1);
+        if (CALL(ofc_rig_row(BAD(model, NULL), BAD(rows, NULL), IMAGE, NULL, below(2) ? NULL : classes, BAD(normals, NULL)), rows, classes,
+                 normals) == OFC_STATUS_OK)
+            floats_finite_or_nan("normals of a row", normals, 3 * (size_t)width);
+    }
+    ofc_rig_contact *const contact = TAKE(ofc_rig_contact, 1);
+    CALL(ofc_rig_rows_contact(BAD(rows, NULL), some_double(0.01, 10), BAD(contact, rows)), contact);
+}
+
 /* A model as bytes, changed and read again. */
 static void keep(const ofc_rig_model *model)
 {
@@ -158,6 +176,7 @@ void target(void)
     if (CALL(ofc_rig_set_scale(BAD(rig, model), BAD(model, NULL), some_double(0.1, 3), some_double(0, 1)), rig) == OFC_STATUS_OK)
         all_finite("scale", &rig->scale, 2);
     use(model);
+    look(model);
     keep(model);
     measure();
 }

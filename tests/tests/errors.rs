@@ -14,7 +14,7 @@ use ofc_core::picture::dark::DarkError;
 use ofc_core::picture::flat_field::FlatFieldError;
 use ofc_core::picture::transfer::TransferError;
 use ofc_core::render::{DepthMapError, LightsError, RenderError};
-use ofc_core::rig::FileError;
+use ofc_core::rig::{FileError, RowError};
 use ofc_core::stream::StreamError;
 use ofc_core::surface::completion::CompletionError;
 use ofc_core::surface::depth::DepthError;
@@ -25,7 +25,7 @@ use std::path::Path;
 #[test]
 fn every_error_says_what_is_wrong() {
     let color_deviations = [0.0; 3];
-    let errors: [Box<dyn Error>; 85] = [
+    let errors: [Box<dyn Error>; 87] = [
         Box::new(CheckError::Orientation),
         Box::new(CheckError::WorkspaceTooShort),
         Box::new(CheckError::NoInliers),
@@ -75,6 +75,8 @@ fn every_error_says_what_is_wrong() {
         Box::new(FileError::Size),
         Box::new(FileError::Damaged),
         Box::new(FileError::Numbers),
+        Box::new(RowError::Row),
+        Box::new(RowError::TooMany),
         Box::new(FlatFieldError::Size),
         Box::new(FlatFieldError::Output),
         Box::new(FlatFieldError::Background),

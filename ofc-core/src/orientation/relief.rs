@@ -22,6 +22,7 @@
 //!
 //! Nothing is answered where the evidence is not that of a relief on a plane: see [`ReliefError`].
 
+mod bit_rows;
 mod cells;
 mod circulation;
 mod contact;
@@ -34,24 +35,29 @@ mod parameters;
 mod reference;
 mod result;
 mod scale;
+mod spread;
 mod survey;
 
 pub use estimate::estimate;
-pub use grid::Grid;
+pub use grid::{Grid, MOST_ALONG};
 pub use normals::normals;
 pub use parameters::ReliefParams;
 pub use reference::{ORDER, Polynomial, TERMS};
 pub use result::{PixelClass, Relief, ReliefError, ScaleSource};
 pub use survey::need;
 
+pub use bit_rows::Row as BitRow;
+pub(crate) use bit_rows::{is_set, narrower, wider};
+pub(crate) use cells::{DARK_SPOT, Strip};
 pub(crate) use circulation::{Circulation, Least, WEIGHT};
-pub(crate) use contact::distances;
+pub(crate) use contact::{DEVIATIONS, SKIRT, distances};
 pub(crate) use estimate::{
     ANISOTROPY, CIRCULATION, CIRCULATION_RATIO, LARGEST_DISAGREEMENT, LEAST_DEVIATION, USUAL_DEVIATION,
     USUAL_TILT, eigenvalues,
 };
-pub(crate) use normals::{Reference, Slopes, normals_by};
+pub(crate) use normals::{Reference, RowSlopes, Slopes, normals_by};
 pub(crate) use outward::arms;
-pub(crate) use result::deviation_by;
+pub(crate) use reference::Along;
 pub(crate) use scale::Inner;
-pub(crate) use survey::{Memory, Survey, survey};
+pub(crate) use spread::{Spread, unit};
+pub(crate) use survey::{Memory, Survey, relative, survey};

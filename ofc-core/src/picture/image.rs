@@ -195,6 +195,12 @@ impl<'a> Image<'a> {
         }
     }
 
+    /// The bits of the up to [`WINDOW`] pixels of row `y` from column `x` on that are in the picture and its mask, without reading them.
+    pub(crate) fn masked(&self, x: usize, y: usize) -> u64 {
+        let len = if y < self.height { self.width.saturating_sub(x).min(WINDOW) } else { 0 };
+        self.mask.map_or(u64::MAX, |mask| mask.bits(x, y, len)) & first_bits(len)
+    }
+
     /// Calls `visit` with the whole picture, [`WINDOW`] pixels at a time, top row first.
     pub fn for_each_window(&self, mut visit: impl FnMut(&Window)) {
         let mut window = Window::new();

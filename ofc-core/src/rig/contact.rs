@@ -38,15 +38,31 @@ pub fn contact(
         let rows = classes.chunks(width.max(1)).enumerate();
         rows.flat_map(|(y, row)| row.iter().enumerate().map(move |(x, class)| (x, y, *class)))
     };
-    let depths = |class: PixelClass| {
-        let of_class = pixels().filter(move |(.., found)| *found == class as u8);
-        of_class.map(|(x, y, _)| (x, y, f64::from(depth(x, y)))).filter(|(.., depth)| depth.is_finite())
-    };
-    let (sum, count) =
-        depths(PixelClass::Plane).fold((0.0, 0.0), |(sum, count), (.., d)| (sum + d, count + 1.0));
+    let (mut sum, mut count) = (0.0, 0.0);
+    let (mut highest, mut lowest) = ((f32::NEG_INFINITY, [0; 2]), (f32::INFINITY, [0; 2]));
+    for (x, y, class) in pixels() {
+        let depth = depth(x, y);
+        if !depth.is_finite() {
+            continue;
+        }
+        if class == PixelClass::Plane as u8 {
+            sum += f64::from(depth);
+            count += 1.0;
+        } else if class == PixelClass::Contact as u8 {
+            if depth > highest.0 {
+                highest = (depth, [x, y]);
+            }
+            if depth < lowest.0 {
+                lowest = (depth, [x, y]);
+            }
+        }
+    }
     let plane = Some(sum / count).filter(|level| level.is_finite())?;
-    let peak = depths(PixelClass::Contact).map(|(x, y, depth)| (x, y, depth - plane));
-    let (peak_x, peak_y, peak) = peak.max_by(|a, b| libm::fabs(a.2).total_cmp(&libm::fabs(b.2)))?;
+    let [above, below] = [highest, lowest].map(|(depth, place)| (f64::from(depth) - plane, place));
+    let (peak, [peak_x, peak_y]) = if above.0 >= -below.0 { above } else { below };
+    if !peak.is_finite() {
+        return None;
+    }
     let sign = 1.0_f64.copysign(peak);
     let is_in = |class: u8, depth: f64| {
         class == PixelClass::Contact as u8

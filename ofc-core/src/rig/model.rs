@@ -1,11 +1,10 @@
 //! A solved rig: what turns the colors of any of its frames into normals.
 
-use super::terms::{Order, TERMS, terms};
+use super::row::Row;
+use super::terms::{Order, TERMS};
 use crate::math::arena::Arena;
-use crate::math::cholesky::dot;
-use crate::math::mat3;
 use crate::orientation::relief::{
-    Grid, Polynomial, Reference, ReliefError, ScaleSource, Slopes, deviation_by, normals_by, survey,
+    Grid, Polynomial, Reference, ReliefError, ScaleSource, Slopes, Spread, normals_by, survey,
 };
 use crate::picture::Image;
 
@@ -67,7 +66,7 @@ impl Model {
     /// The expected error in radians of normals in a contact.
     #[must_use]
     pub fn expected_error(&self) -> f64 {
-        self.model_deviation(self.tilt)
+        self.spread().of_sine(self.tilt)
     }
 
     /// The Frobenius norm of the constant terms of W.
@@ -95,18 +94,14 @@ impl Model {
 }
 
 impl Slopes for Model {
-    fn slopes(&self, place: [f64; 2], delta: [f64; 3]) -> [f64; 2] {
-        if self.order == Order::Constant {
-            let first = |row: &[f64; TERMS]| row.first_chunk::<3>().copied().unwrap_or_default();
-            return self.w.each_ref().map(|row| mat3::dot(first(row), delta));
-        }
-        let terms = terms(place, delta);
-        let used = terms.get(..self.order.len()).unwrap_or_default();
-        self.w.each_ref().map(|row| dot(row, used))
+    type Row = Row;
+
+    fn row(&self, y: f64) -> Row {
+        Row::of(self.w.each_ref(), self.order, y)
     }
 
-    fn model_deviation(&self, sine: f64) -> f64 {
-        deviation_by(self.disagreement, self.tilt, self.scale_deviation, sine)
+    fn spread(&self) -> Spread {
+        Spread::new(self.disagreement, self.tilt, self.scale_deviation)
     }
 
     fn noise(&self, noise: [f64; 3]) -> f64 {

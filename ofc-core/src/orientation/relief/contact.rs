@@ -4,34 +4,50 @@
 //! contact, once what is narrower than three cells is taken away; around it lies a skirt of five cells in which the relief
 //! comes up from the plane.
 
+use super::bit_rows::{BitRows, is_set};
 use super::grid::{BRIDGED, Cell, Grid, class, neighbors};
 use super::result::PixelClass;
 use crate::color::dispersion::CONSISTENCY;
 use crate::math::select::{kth_smallest, median_rank};
 
 /// Deviations from the plane of a cell of the contact.
-const DEVIATIONS: f64 = 5.0;
+pub(crate) const DEVIATIONS: f32 = 5.0;
 
 /// Cells of the skirt.
-const SKIRT: usize = 5;
+pub(crate) const SKIRT: usize = 5;
 
-/// The deviation of each channel of the known cells from the plane, at least `least`; `None` where there are none.
+/// At most about so many cells say what the noise is.
+const MOST_CELLS: usize = 6000;
+
+/// The deviation of each channel of the known cells from the plane, at least `least`; `None` where there are none. Of many cells those of every
+/// second or third row and column count.
 ///
 /// # Scratch
 /// One `f32` a cell.
 pub(super) fn noise(
+    grid: &Grid,
     planes: &[&mut [f32]; 3],
     states: &[u32],
     least: [f64; 3],
     scratch: &mut [f32],
 ) -> Option<[f64; 3]> {
+    let step = grid.step(MOST_CELLS);
     let mut deviations = [0.0; 3];
     for ((deviation, plane), least) in deviations.iter_mut().zip(planes).zip(least) {
-        let mut count = 0;
-        let known = plane.iter().zip(states).filter(|(_, state)| **state == Cell::Known as u32);
-        for ((value, _), slot) in known.zip(scratch.iter_mut()) {
-            *slot = value.abs();
-            count += 1;
+        let (mut count, mut y) = (0, 0);
+        while y < grid.height {
+            let mut x = 0;
+            while x < grid.width {
+                let cell = y * grid.width + x;
+                if states.get(cell) == Some(&(Cell::Known as u32))
+                    && let (Some(value), Some(slot)) = (plane.get(cell), scratch.get_mut(count))
+                {
+                    *slot = value.abs();
+                    count += 1;
+                }
+                x += step.get();
+            }
+            y += step.get();
         }
         let median = kth_smallest(scratch.get(..count)?, median_rank(count))?;
         *deviation = f64::max(CONSISTENCY * f64::from(median), least);
@@ -40,6 +56,9 @@ pub(super) fn noise(
 }
 
 /// Turns the states of cells into classes of [`PixelClass`], with the bit [`BRIDGED`] where the cell was missing.
+///
+/// # Scratch
+/// `other`: one integer a cell.
 pub(super) fn classify(
     grid: &Grid,
     planes: &[&mut [f32]; 3],
@@ -47,62 +66,38 @@ pub(super) fn classify(
     states: &mut [u32],
     other: &mut [u32],
 ) {
-    let floor = f64::from(f32::EPSILON);
-    let reciprocals = noise.map(|deviation| 1.0 / deviation.max(floor));
-    for (cell, (state, touched)) in states.iter().zip(other.iter_mut()).enumerate() {
-        let square = planes.iter().zip(reciprocals).fold(0.0, |sum, (plane, reciprocal)| {
-            let value = plane.get(cell).map_or(0.0, |&value| f64::from(value)) * reciprocal;
-            sum + value * value
-        });
-        *touched = u32::from(*state != Cell::Outside as u32 && square > DEVIATIONS * DEVIATIONS);
+    let reciprocals = noise.map(|deviation| 1.0 / (deviation as f32).max(f32::EPSILON));
+    let mut rows = BitRows::new(other, grid.width, grid.height);
+    for (y, states) in states.chunks(grid.width.max(1)).enumerate() {
+        let [red, green, blue] =
+            planes.each_ref().map(|plane| plane.get(y * grid.width..).unwrap_or_default());
+        let colors = red.iter().zip(green).zip(blue).map(|((red, green), blue)| [*red, *green, *blue]);
+        rows.set(
+            y,
+            states.iter().zip(colors).map(|(state, delta)| {
+                let [r, g, b] = delta;
+                let [r, g, b] = [r * reciprocals[0], g * reciprocals[1], b * reciprocals[2]];
+                *state != Cell::Outside as u32 && r * r + g * g + b * b > DEVIATIONS * DEVIATIONS
+            }),
+        );
     }
-    // The mask lies in the states, in their upper half: nothing but the classes is left below.
-    for (state, touched) in states.iter_mut().zip(other.iter()) {
-        *state = *state << 16 | *touched;
-    }
-    spread(grid, states, other, 1, u32::min);
-    spread(grid, states, other, 1, u32::max);
-    spread(grid, states, other, SKIRT, u32::max);
-    for (state, other) in states.iter_mut().zip(other.iter()) {
-        let (before, near, contact) = (*state >> 16, *state & 1 == 1, other >> 1 & 1 == 1);
-        let class = if before == Cell::Outside as u32 {
-            PixelClass::None
-        } else if contact {
-            PixelClass::Contact
-        } else if near {
-            PixelClass::Skirt
-        } else {
-            PixelClass::Plane
-        };
-        *state = class as u32 | if before == Cell::Missing as u32 { BRIDGED } else { 0 };
-    }
-}
-
-/// Replaces the lowest bit of every state by what `pick` makes of the lowest bits within `radius` rows and columns. `other` keeps, in
-/// its bit 1, the bit before.
-fn spread(grid: &Grid, states: &mut [u32], other: &mut [u32], radius: usize, pick: fn(u32, u32) -> u32) {
-    for (state, other) in states.iter().zip(other.iter_mut()) {
-        *other = (*state & 1) << 1;
-    }
-    let around = |i: usize, len: usize| i.saturating_sub(radius)..(i + radius + 1).min(len);
-    for y in 0..grid.height {
-        let row = y * grid.width;
-        for x in 0..grid.width {
-            let bits = around(x, grid.width).filter_map(|x| states.get(row + x).map(|state| state & 1));
-            let picked = bits.reduce(pick).unwrap_or(0);
-            other.iter_mut().skip(row + x).take(1).for_each(|other| *other |= picked);
-        }
-    }
-    for y in 0..grid.height {
-        for x in 0..grid.width {
-            let bits =
-                around(y, grid.height).filter_map(|y| other.get(y * grid.width + x).map(|other| other & 1));
-            let picked = bits.reduce(pick).unwrap_or(0);
-            states
-                .iter_mut()
-                .skip(y * grid.width + x)
-                .take(1)
-                .for_each(|state| *state = *state & !1 | picked);
+    rows.shrink(1);
+    rows.grow(1);
+    rows.keep();
+    rows.grow(SKIRT);
+    for (y, states) in states.chunks_mut(grid.width.max(1)).enumerate() {
+        let [contact, near] = [rows.kept(y), rows.get(y)];
+        for (x, state) in states.iter_mut().enumerate() {
+            let class = if *state == Cell::Outside as u32 {
+                PixelClass::None
+            } else if is_set(&contact, x) {
+                PixelClass::Contact
+            } else if is_set(&near, x) {
+                PixelClass::Skirt
+            } else {
+                PixelClass::Plane
+            };
+            *state = class as u32 | if *state == Cell::Missing as u32 { BRIDGED } else { 0 };
         }
     }
 }

@@ -18,6 +18,9 @@ pub(super) fn fill(grid: &Grid, planes: &mut [&mut [f32]; 3], states: &mut [u32]
         }
     }
     for _ in 0..DEPTH {
+        if !states.contains(&(Cell::Missing as u32)) {
+            break;
+        }
         for cell in 0..grid.len() {
             if states.get(cell) != Some(&(Cell::Missing as u32)) {
                 continue;

@@ -1,7 +1,12 @@
 //! Square cells of a picture, and what is known of each.
 
+use core::num::NonZero;
+
 /// Cells along the longer side, about.
 const CELLS: usize = 160;
+
+/// Fewer cells than this lie along any side.
+pub const MOST_ALONG: usize = CELLS + CELLS / 2;
 
 /// The shorter side has at least so many cells.
 const FEWEST: usize = 32;
@@ -46,6 +51,12 @@ impl Grid {
         let along =
             |i: usize, count: usize| i.checked_div(self.side).unwrap_or(0).min(count.saturating_sub(1));
         along(y, self.height) * self.width + along(x, self.width)
+    }
+
+    /// Of which rows and columns the cells are at most about so many: every one, every second, every third ...
+    pub(super) fn step(&self, most: usize) -> NonZero<usize> {
+        let step = (1..self.width).find(|step| self.len() <= most * step * step).unwrap_or(1);
+        NonZero::new(step).unwrap_or(NonZero::<usize>::MIN)
     }
 
     /// Column and row of a cell.
@@ -102,4 +113,16 @@ pub(super) fn around(grid: &Grid, cell: usize) -> impl Iterator<Item = usize> + 
     let span = |i: usize, len: usize| i.saturating_sub(1)..(i + 2).min(len);
     let columns = span(x, grid.width);
     span(y, grid.height).flat_map(move |y| columns.clone().map(move |x| y * width + x))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_side_has_more_cells_than_it_may() {
+        let most =
+            (FEWEST..100_000).filter_map(|longer| Grid::of(longer, longer)).map(|grid| grid.width).max();
+        assert_eq!(most, Some(MOST_ALONG - 1));
+    }
 }

@@ -3,22 +3,43 @@
 use super::grid::Grid;
 use super::reference::Polynomial;
 use super::result::{PixelClass, Relief, ReliefError};
-use super::scale::unit;
+use super::spread::Spread;
 use super::survey::relative;
-use crate::math::mat3;
-use crate::picture::{Image, Usable, WINDOW, Window};
-use libm::sqrt;
+use crate::picture::{Image, Usable, WINDOW, Window, first_bits};
 
 /// What turns the colors of pixels into slopes.
 pub(crate) trait Slopes {
-    /// (n1, n2) of a pixel whose color relative to the plane is `delta`, at a place in [-1, 1] across and down the picture.
-    fn slopes(&self, place: [f64; 2], delta: [f64; 3]) -> [f64; 2];
+    /// The slopes along a row.
+    type Row: RowSlopes;
 
-    /// The standard deviation in radians of a normal whose slant has this sine, but for the pixel's noise.
-    fn model_deviation(&self, sine: f64) -> f64;
+    /// Those of the row at this height in [-1, 1], down the picture.
+    fn row(&self, y: f64) -> Self::Row;
+
+    /// What the standard deviation of a normal is made of, but for the pixel's noise.
+    fn spread(&self) -> Spread;
 
     /// The variance of each slope that comes from noise in delta with these deviations.
     fn noise(&self, noise: [f64; 3]) -> f64;
+}
+
+/// What turns the colors of pixels along a row into slopes.
+pub(crate) trait RowSlopes {
+    /// (n1, n2) of the pixels at these places in [-1, 1] along the row, whose colors relative to the plane are `delta`.
+    fn slopes(&self, x: &[f32; WINDOW], delta: &[[f32; WINDOW]; 3]) -> [[f32; WINDOW]; 2];
+}
+
+/// W, the same everywhere.
+impl RowSlopes for [[f64; 3]; 2] {
+    fn slopes(&self, _: &[f32; WINDOW], delta: &[[f32; WINDOW]; 3]) -> [[f32; WINDOW]; 2] {
+        let mut slopes = [[0.0; WINDOW]; 2];
+        for (slopes, row) in slopes.iter_mut().zip(self) {
+            for (w, delta) in row.iter().zip(delta) {
+                let w = *w as f32;
+                slopes.iter_mut().zip(delta).for_each(|(slope, delta)| *slope += w * delta);
+            }
+        }
+        slopes
+    }
 }
 
 /// The plane that the slopes are relative to.
@@ -31,12 +52,14 @@ pub(crate) struct Reference<'a> {
 }
 
 impl Slopes for Relief {
-    fn slopes(&self, _: [f64; 2], delta: [f64; 3]) -> [f64; 2] {
-        self.w.map(|row| mat3::dot(row, delta))
+    type Row = [[f64; 3]; 2];
+
+    fn row(&self, _: f64) -> Self::Row {
+        self.w
     }
 
-    fn model_deviation(&self, sine: f64) -> f64 {
-        self.model_deviation(sine)
+    fn spread(&self) -> Spread {
+        self.spread()
     }
 
     fn noise(&self, noise: [f64; 3]) -> f64 {
@@ -87,41 +110,52 @@ pub(crate) fn normals_by(
     let usable = Usable::below(reference.saturation.unwrap_or(image.sample().saturation()));
     // The noise of a pixel from that of a cell, an average of as many as it has.
     let noise = slopes.noise(reference.noise.map(|deviation| deviation * grid.side as f64));
-    let nothing = ([f64::NAN; 3], f64::NAN);
+    let spread = slopes.spread().with_noise(noise);
+    let plane_normal = ([0.0, 0.0, 1.0], 0.0);
+    let nothing = ([f32::NAN; 3], f32::NAN);
     let (mut window, mut other) = (Window::new(), Window::new());
-    for y in 0..height {
+    let (mut places, mut delta) = ([0.0_f32; WINDOW], [[0.0_f32; WINDOW]; 3]);
+    for (y, classes) in classes.chunks(width.max(1)).enumerate() {
         let down = place(y, grid.height * grid.side);
-        for x in (0..width).step_by(WINDOW) {
+        let (row, along) = (slopes.row(down), plane.along(down));
+        for (x, classes) in (0..width).step_by(WINDOW).zip(classes.chunks(WINDOW)) {
+            let is_plane = classes.iter().all(|&class| class == PixelClass::Plane as u8);
+            if is_plane && image.masked(x, y) == first_bits(classes.len()) {
+                for i in 0..classes.len() {
+                    write(x + i, y, plane_normal.0, plane_normal.1);
+                }
+                continue;
+            }
             image.read(x, y, &mut window);
             let bits = usable.exposed(&window);
+            for (i, place) in places.iter_mut().enumerate() {
+                *place = self::place(x + i, grid.width * grid.side) as f32;
+            }
             if let Some(background) = background {
                 background.read(x, y, &mut other);
+            } else {
+                for (colors, along) in other.color.iter_mut().zip(&along) {
+                    for (color, &place) in colors.iter_mut().zip(&places) {
+                        *color = along.at(f64::from(place)) as f32;
+                    }
+                }
             }
-            for i in 0..window.len {
-                let class = classes.get(y * width + x + i).copied().unwrap_or(0);
-                let is_usable = bits >> i & 1 == 1 && class != PixelClass::None as u8;
+            for ((delta, colors), planes) in delta.iter_mut().zip(&window.color).zip(&other.color) {
+                for ((delta, &color), &plane) in delta.iter_mut().zip(colors).zip(planes) {
+                    *delta = relative(color, plane);
+                }
+            }
+            let [across, up] = row.slopes(&places, &delta);
+            for (i, ((&class, &n1), &n2)) in classes.iter().zip(&across).zip(&up).enumerate() {
                 let (normal, deviation) = if class == PixelClass::Plane as u8 && window.masked >> i & 1 == 1 {
-                    ([0.0, 0.0, 1.0], 0.0)
-                } else if !is_usable {
+                    plane_normal
+                } else if bits >> i & 1 == 0 || class == PixelClass::None as u8 {
                     nothing
                 } else {
-                    let at = [place(x + i, grid.width * grid.side), down];
-                    let plane = match background {
-                        Some(_) => other.pixel(i).map(f64::from),
-                        None => plane.at(at),
-                    };
-                    let mut delta = [0.0; 3];
-                    for ((delta, color), plane) in delta.iter_mut().zip(window.pixel(i)).zip(plane) {
-                        *delta = relative(f64::from(color), plane);
-                    }
-                    let (normal, _) = unit(slopes.slopes(at, delta));
-                    let [n1, n2, n3] = normal;
-                    let model = slopes.model_deviation(sqrt(n1 * n1 + n2 * n2));
-                    let deviation = sqrt(model * model + noise / (n3 * n3)).min(f64::from(f32::MAX));
                     // A relief that nobody found may hold numbers from which no normal follows.
-                    if normal.iter().all(|n| n.is_finite()) { (normal, deviation) } else { nothing }
+                    spread.normal([n1, n2]).unwrap_or(nothing)
                 };
-                write(x + i, y, normal.map(|n| n as f32), deviation as f32);
+                write(x + i, y, normal, deviation);
             }
         }
     }

@@ -38,6 +38,43 @@ impl Polynomial {
         let terms = terms(place);
         self.coefficients.each_ref().map(|row| cholesky::dot(row, &terms))
     }
+
+    /// Each channel along the row at this height in [-1, 1].
+    pub(crate) fn along(&self, y: f64) -> [Along; 3] {
+        self.coefficients.each_ref().map(|row| Along::of(row, y))
+    }
+}
+
+/// A channel along a row: the coefficients of the powers of x.
+#[derive(Clone, Copy)]
+pub(crate) struct Along([f64; ORDER + 1]);
+
+impl Along {
+    /// Of a channel with these coefficients, at this height in [-1, 1].
+    pub fn of(coefficients: &[f64], y: f64) -> Self {
+        let mut along = [0.0; ORDER + 1];
+        let mut coefficients = coefficients.iter();
+        for order in 0..=ORDER {
+            // Of order n: x^n, x^(n - 1) y, ... y^n.
+            let mut power = 1.0;
+            let powers = along.iter_mut().take(order + 1).rev();
+            for (sum, coefficient) in powers.zip(&mut coefficients) {
+                *sum += coefficient * power;
+                power *= y;
+            }
+        }
+        Self(along)
+    }
+
+    /// In single precision.
+    pub fn singles(&self) -> [f32; ORDER + 1] {
+        self.0.map(|coefficient| coefficient as f32)
+    }
+
+    /// The color at x in [-1, 1].
+    pub fn at(&self, x: f64) -> f64 {
+        self.0.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
+    }
 }
 
 /// The products of powers of x and y, by ascending order.
@@ -68,7 +105,7 @@ pub(super) fn fit(
     scratch: &mut [f32],
 ) -> Option<Polynomial> {
     let is_known = |cell: &usize| states.get(*cell) == Some(&(Cell::Known as u32));
-    let step = (1..grid.width).find(|step| grid.len() <= MOST_CELLS * step * step).unwrap_or(1);
+    let step = grid.step(MOST_CELLS).get();
     let cells = || {
         let rows = (0..grid.height).step_by(step.max(1));
         let all = rows.flat_map(|y| (0..grid.width).step_by(step.max(1)).map(move |x| y * grid.width + x));
@@ -162,5 +199,18 @@ mod tests {
         let found = terms([x, y]);
         assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?} {expected:?}");
         assert_eq!(expected.len(), TERMS);
+    }
+    #[test]
+    fn along_a_row_a_polynomial_is_what_it_is_at_each_place() {
+        let coefficients = [0, 1, 2].map(|k| core::array::from_fn(|i| ((k * 31 + i * 7) % 13) as f64 - 6.0));
+        let polynomial = Polynomial { coefficients };
+        for y in [-0.9, 0.1, 0.8] {
+            let along = polynomial.along(y);
+            for x in [-1.0, -0.3, 0.6] {
+                for (along, value) in along.iter().zip(polynomial.at([x, y])) {
+                    assert!((along.at(x) - value).abs() < 1e-13);
+                }
+            }
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::grid::Grid;
 use super::reference::Polynomial;
+use super::spread::Spread;
 use crate::math::arena::Need;
 use core::fmt;
 
@@ -74,28 +75,17 @@ pub struct Relief {
 }
 
 impl Relief {
-    /// The standard deviation in radians of a normal's direction that comes from the model, for a normal whose slant has this
-    /// sine: of the scale, which grows with the slope, and of W, which does not.
-    #[must_use]
-    pub fn model_deviation(&self, sine: f64) -> f64 {
+    /// What the deviation of a normal is made of: of the scale, which grows with the slope, and of W, which does not.
+    pub(crate) fn spread(&self) -> Spread {
         let share = self.disagreement.unwrap_or(self.circulation);
-        deviation_by(share, self.tilt, self.scale_deviation, sine)
+        Spread::new(share, self.tilt, self.scale_deviation)
     }
 
     /// The expected error in radians of the normals in the contact.
     #[must_use]
     pub fn expected_error(&self) -> f64 {
-        self.model_deviation(self.tilt)
+        self.spread().of_sine(self.tilt)
     }
-}
-
-/// The deviation of a normal whose slant has this sine: where the slopes, whose root mean square is `tilt`, miss this share of their
-/// variance, and the logarithm of their scale has this deviation.
-pub(crate) fn deviation_by(share: f64, tilt: f64, scale_deviation: f64, sine: f64) -> f64 {
-    let model = share.min(1.0) * tilt * tilt;
-    let cosine_square = (1.0 - sine * sine).max(0.05);
-    let scale = scale_deviation * sine;
-    libm::sqrt((model + scale * scale) / cosine_square)
 }
 
 /// Why there is no relief on a plane.

@@ -7,6 +7,7 @@
 
 use super::grid::{Grid, Planes, class};
 use super::result::PixelClass;
+use super::spread::LARGEST_SQUARE;
 use crate::color::dispersion::dispersion;
 use crate::color::ellipsoid::{self, single_residual};
 use crate::color::lmeds::{MIN_PIXELS, Sample};
@@ -36,8 +37,7 @@ const STEPS: u32 = 60;
 const SMALLEST_TILT: f64 = 0.05;
 const LARGEST_TILT: f64 = 1.2;
 
-/// The largest squared sine that a normal can have, and the share of the cells that may be beyond it.
-const LARGEST_SQUARE: f64 = 0.95;
+/// The share of the cells that may be beyond the largest squared sine that a normal can have.
 const MOST_BEYOND: f64 = 0.1;
 
 /// A scale, and how far both models disagree with it.

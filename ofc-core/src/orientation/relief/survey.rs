@@ -1,6 +1,6 @@
 //! A picture of a plane as cells: how much the color of each differs from the plane's, and which are touched.
 
-use super::cells::{self, Selection, Source};
+use super::cells::{self, Source};
 use super::circulation::Circulation;
 use super::contact;
 use super::fill::fill;
@@ -84,14 +84,12 @@ pub(crate) fn survey<'w>(
     let plane = pictures.average(known, &mut memory).ok_or(ReliefError::TooFewPixels)?;
     pictures.compare(&plane, &mut memory);
     let Memory { color, scratch, classes: states, other, .. } = &mut memory;
-    let noise =
-        contact::noise(color, states, pictures.rounding(&plane), scratch).ok_or(ReliefError::TooFewPixels)?;
+    let noise = contact::noise(&grid, color, states, pictures.rounding(&plane), scratch)
+        .ok_or(ReliefError::TooFewPixels)?;
     fill(&grid, color, states);
     contact::classify(&grid, color, noise, states, other);
-    let mut cells = [0; 4];
-    for state in states.iter() {
-        cells.iter_mut().skip(class(*state) as usize).take(1).for_each(|count| *count += 1);
-    }
+    let cells = [PixelClass::None, PixelClass::Plane, PixelClass::Skirt, PixelClass::Contact]
+        .map(|of| states.iter().filter(|state| class(**state) == of as u32).count());
     Ok(Survey { grid, plane, noise, cells, memory })
 }
 
@@ -113,17 +111,15 @@ impl Pictures<'_> {
         let polynomial = if let Some(known) = known {
             *known
         } else {
-            let all = Selection { usable: source_usable, plane: None };
-            cells::average(&mut [Source::new(source, all, plane)], grid, classes, other);
+            cells::average(&mut [Source::new(source, source_usable, plane)], None, grid, classes, other);
             reference::fit(grid, plane, classes, scratch)?
         };
-        let without_spots = |usable| Selection { usable, plane: Some(&polynomial) };
-        let of_image = Source::new(image, without_spots(*usable), color);
+        let of_image = Source::new(image, *usable, color);
         match background {
-            None => cells::average(&mut [of_image], grid, classes, other),
+            None => cells::average(&mut [of_image], Some(&polynomial), grid, classes, other),
             Some(background) => {
-                let of_background = Source::new(background, without_spots(source_usable), plane);
-                cells::average(&mut [of_image, of_background], grid, classes, other);
+                let of_background = Source::new(background, source_usable, plane);
+                cells::average(&mut [of_image, of_background], Some(&polynomial), grid, classes, other);
             }
         }
         let known = classes.iter().filter(|state| **state == Cell::Known as u32).count();
@@ -133,19 +129,21 @@ impl Pictures<'_> {
     /// Makes the picture's colors relative to the plane's.
     fn compare(&self, plane: &Polynomial, memory: &mut Memory) {
         let Memory { color, plane: reference, .. } = memory;
-        for cell in 0..self.grid.len() {
-            let by_polynomial = match self.background {
-                Some(_) => [1.0; 3],
-                None => plane.at(self.grid.middle(cell)),
-            };
-            for ((color, reference), fitted) in color.iter_mut().zip(reference.iter()).zip(by_polynomial) {
-                let reference = match self.background {
-                    Some(_) => reference.get(cell).map_or(1.0, |&value| f64::from(value)),
-                    None => fitted,
-                };
-                if let Some(value) = color.get_mut(cell) {
-                    *value = relative(f64::from(*value), reference) as f32;
+        if self.background.is_none() {
+            for row in 0..self.grid.height {
+                let first = row * self.grid.width;
+                let along = plane.along(self.grid.middle(first)[1]);
+                for (reference, along) in reference.iter_mut().zip(along) {
+                    let cells = reference.iter_mut().skip(first).take(self.grid.width);
+                    for (i, value) in cells.enumerate() {
+                        *value = along.at(self.grid.middle(i)[0]) as f32;
+                    }
                 }
+            }
+        }
+        for (color, reference) in color.iter_mut().zip(reference.iter()) {
+            for (color, reference) in color.iter_mut().zip(reference.iter()) {
+                *color = relative(*color, *reference);
             }
         }
     }
@@ -180,18 +178,29 @@ impl Survey<'_> {
     /// The classes of pixels from those of their cells, for rows of so many pixels.
     pub fn write(&self, width: usize, classes: &mut [u8]) {
         let states = &self.memory.classes;
-        for (y, row) in classes.chunks_mut(width.max(1)).enumerate() {
-            for (x, class) in row.iter_mut().enumerate() {
-                let state = states.get(self.grid.cell(x, y)).copied().unwrap_or(PixelClass::None as u32);
+        let side = self.grid.side.max(1);
+        let width = width.max(1);
+        for (y, rows) in classes.chunks_mut((width * side).max(1)).enumerate() {
+            let of_row = states.iter().skip(self.grid.cell(0, y * side)).take(self.grid.width);
+            let Some((first, others)) = rows.split_at_mut_checked(width) else { return };
+            let mut pixels = first.iter_mut();
+            let mut last = PixelClass::None as u8;
+            for state in of_row {
                 // What has no color of its own has no normal either, but on the plane.
-                let is_bridged = state & BRIDGED != 0 && self::class(state) != PixelClass::Plane as u32;
-                *class = if is_bridged { PixelClass::None as u8 } else { self::class(state) as u8 };
+                let is_bridged = state & BRIDGED != 0 && class(*state) != PixelClass::Plane as u32;
+                last = if is_bridged { PixelClass::None as u8 } else { class(*state) as u8 };
+                pixels.by_ref().take(side).for_each(|pixel| *pixel = last);
+            }
+            // Pixels beyond the last whole cell are like it.
+            pixels.for_each(|pixel| *pixel = last);
+            for row in others.chunks_mut(width) {
+                row.iter_mut().zip(first.iter()).for_each(|(pixel, class)| *pixel = *class);
             }
         }
     }
 }
 
 /// How far a color is from that of the plane, relative to it.
-pub(crate) fn relative(color: f64, plane: f64) -> f64 {
-    if plane > 0.0 { color / plane - 1.0 } else { 0.0 }
+pub(crate) fn relative(color: f32, plane: f32) -> f32 {
+    if plane > 0.0 { (color - plane) / plane } else { 0.0 }
 }
