@@ -259,6 +259,25 @@ def test_frames_of_a_rig_add_up() -> None:
     assert (model.normals(frame.pixels) == normals)[contact].all()
     assert np.median(angles(normals * contact[..., None], frame.normals)) < 6
     assert (sigma[contact] > 0).all()
+    depth = ofc.integrate(np.nan_to_num(normals)).depth
+    mask = np.empty(classes.shape, np.uint8)
+    pressed = ofc.measure_contact(classes, depth, pixel_size=0.5, mask=mask)
+    assert pressed is not None
+    assert pressed.area == 0.25 * np.count_nonzero(mask)
+    assert np.hypot(*(pressed.center - places[0])) < 3
+    assert pressed.peak > 0
+    assert "high" in repr(pressed)
+    assert ofc.measure_contact(np.full_like(classes, ofc.ReliefClass.PLANE), depth) is None
+    kept = ofc.RigModel.from_bytes(model.to_bytes())
+    assert (kept.normals(frame.pixels) == model.normals(frame.pixels))[contact].all()
+    with pytest.raises(ofc.Error):
+        ofc.RigModel.from_bytes(model.to_bytes()[:-1])
+    background = np.full((*classes.shape, 3), np.nan, np.float32)
+    untouched = press(60.5, 60.5)[1].pixels
+    ofc.follow_background(background, untouched)
+    assert (background == untouched).all()
+    ofc.follow_background(background, frame.pixels, classes, rate=0.5)
+    assert (background[contact] == untouched[contact]).all()
     one.set_scale(model, 1.1, 0.05)
     with pytest.raises(ofc.Refused):
         ofc.Rig(240, 180).solve()

@@ -20,7 +20,7 @@ SOURCES = "".join(path.read_text(encoding="utf-8") for path in Path(ofc.__file__
 
 # Not wrapped, and why.
 A_STAGE = "a stage of ofc_solve(), whose Solution has what it finds"
-A_RIG = "of rigs, the models in files, contacts and backgrounds are not wrapped yet"
+ROWS = "for microcontrollers; RigModel.normals() takes whole frames"
 LEFT_OUT = {
     "ofc_version": "ofc_version_string() is __version__",
     "ofc_segment_mark": "labels == label is the same mask",
@@ -56,10 +56,9 @@ LEFT_OUT = {
     "ofc_orthogonal_annealing": A_STAGE,
     "ofc_constrained_slants_integrable_workspace_size": A_STAGE,
     "ofc_constrained_slants_integrable": A_STAGE,
-    "ofc_rig_model_save": A_RIG,
-    "ofc_rig_model_load": A_RIG,
-    "ofc_rig_contact_measure": A_RIG,
-    "ofc_rig_background_follow": A_RIG,
+    "ofc_rig_rows_begin": ROWS,
+    "ofc_rig_row": ROWS,
+    "ofc_rig_rows_contact": ROWS,
 }
 
 
@@ -94,6 +93,7 @@ STRUCTS: dict[str, type] = {
     "ofc_relief": ofc.Relief,
     "ofc_region": ofc.Region,
     "ofc_rig_model": ofc.RigModel,
+    "ofc_rig_contact": ofc.RigContact,
     "ofc_surface_light": ofc.SurfaceLight,
     "ofc_surface_result": ofc.Surface,
     "ofc_surface_params": ofc.SurfaceParams,

@@ -58,7 +58,7 @@ from .picture import Picture
 from .plot import normal_map
 from .relief import Relief, solve_relief
 from .rendering import Rendering, render
-from .rig import Rig, RigModel
+from .rig import Rig, RigContact, RigModel, follow_background, measure_contact
 from .segmentation import Region, Segmentation, classify_patches, segment
 from .solution import Solution, normals_from_matrix, pixel_counts, solve
 from .stages import Check, Covariance, PixelCounts
@@ -103,6 +103,7 @@ __all__ = [
     "Rendering",
     "Rig",
     "RigAdvice",
+    "RigContact",
     "RigModel",
     "Scale",
     "SegmentParams",
@@ -127,8 +128,10 @@ __all__ = [
     "find_saturation",
     "fit_offset",
     "flat_field",
+    "follow_background",
     "integrate",
     "linearize",
+    "measure_contact",
     "normal_map",
     "normals_from_matrix",
     "pixel_counts",

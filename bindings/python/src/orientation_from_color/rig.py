@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._arrays import output, row_stride
+from ._arrays import output, plane, row_stride
 from ._native import ffi, lib
 from .enums import NoRelief, RigAdvice, Scale, Status
 from .errors import Error, Refused
@@ -57,14 +57,27 @@ class RigModel(Report):
 
     _not_in_c = ("struct",)
 
+    def to_bytes(self) -> bytes:
+        """The model as bytes, the same on every machine, with a checksum: what from_bytes() and `ofc_live --model` read."""
+        saved = ffi.new("uint8_t[]", lib.OFC_RIG_MODEL_BYTES)
+        _abi.check(lib.ofc_rig_model_save(self.struct, saved, lib.OFC_RIG_MODEL_BYTES))
+        return bytes(ffi.buffer(saved))
+
+    @classmethod
+    def from_bytes(cls, saved: bytes) -> RigModel:
+        """The model that to_bytes() or `ofc_live --save-model` wrote; Error where the bytes are none, or damaged."""
+        struct = ffi.new("ofc_rig_model *")
+        _abi.check(lib.ofc_rig_model_load(ffi.from_buffer("uint8_t[]", saved), len(saved), struct))
+        return _abi.read(cls, struct, struct=struct)
+
     def classify(self, photo: Photo, background: Photo | None = None, *, channels: Channels = "rgb") -> npt.NDArray[np.uint8]:
         """What each pixel of a frame is part of, (height, width) uint8: a ReliefClass."""
-        picture, plane = _frame(photo, background, channels)
+        picture, below = _frame(photo, background, channels)
         need = lib.ofc_relief_workspace_size(picture.width, picture.height)
         memory, classes = _abi.workspace(need), np.zeros(picture.shape, np.uint8)
         address = _abi.pointer("void *", memory)
         into = _abi.pointer("uint8_t *", classes)
-        _abi.check(lib.ofc_rig_classify(self.struct, picture.struct, struct_of(plane), address, need, into))
+        _abi.check(lib.ofc_rig_classify(self.struct, picture.struct, struct_of(below), address, need, into))
         return classes
 
     def normals(
@@ -81,8 +94,8 @@ class RigModel(Report):
 
         Where `uncertainty` is an array of (height, width) float32, it becomes the standard deviation of the angle in radians.
         """
-        picture, plane = _frame(photo, background, channels)
-        known = self.classify(picture, plane) if classes is None else np.ascontiguousarray(classes, np.uint8)
+        picture, below = _frame(photo, background, channels)
+        known = self.classify(picture, below) if classes is None else np.ascontiguousarray(classes, np.uint8)
         if known.shape != picture.shape:
             raise ValueError(f"classes: (height, width) of the frame, not {known.shape}")
         out = output(out, (*picture.shape, 3))
@@ -91,7 +104,7 @@ class RigModel(Report):
             lib.ofc_rig_normals(
                 self.struct,
                 picture.struct,
-                struct_of(plane),
+                struct_of(below),
                 _abi.pointer("uint8_t *", known),
                 _abi.pointer("float *", out),
                 row_stride(out),
@@ -108,6 +121,94 @@ class RigModel(Report):
         scale = f"{self.scale_source.name.lower()}, known within {100 * self.scale_deviation:.0f} %"
         lines = [("rig", made_of), ("trust", off), ("scale", scale)]
         return lines if self.advice is RigAdvice.NONE else [*lines, ("try", _ADVICE[self.advice])]
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class RigContact(Report):
+    """What is pressed in.
+
+    Places are in pixels from the middle of the top left one, y downward; lengths in the unit of the pixel size.
+    """
+
+    area: float
+    center: Annotated[_abi.Floats, (2,)]
+    peak: float
+    volume: float
+    peak_place: Annotated[npt.NDArray[np.int32], (2,)]
+    bounds: Annotated[npt.NDArray[np.int32], (4,)]
+
+    def lines(self) -> list[tuple[str, str]]:
+        """What a person wants to know first."""
+        x, y = self.center
+        return [("contact", f"{self.area:.4g} large, {self.peak:.3g} high, about {x:.1f}, {y:.1f}")]
+
+
+def measure_contact(
+    classes: npt.NDArray[np.uint8],
+    depth: npt.ArrayLike,
+    *,
+    pixel_size: float = 1,
+    mask: npt.NDArray[np.uint8] | None = None,
+) -> RigContact | None:
+    """What is pressed in, or None where there is no contact.
+
+    Args:
+        classes: What RigModel.classify() gave.
+        depth: Depth in pixels of the whole frame, from integrate().
+        pixel_size: The length of a pixel on the gel.
+        mask: Where it is (height, width) uint8 it becomes 255 in the contact, and 0 elsewhere.
+    """
+    known = np.ascontiguousarray(classes, np.uint8)
+    height, width = known.shape
+    heights, found = plane(depth, (height, width), "depth"), ffi.new("ofc_rig_contact *")
+    if mask is not None and (mask.shape != known.shape or mask.dtype != np.uint8 or not mask.flags.c_contiguous):
+        raise ValueError(f"mask: contiguous uint8 of shape {known.shape}")
+    status = lib.ofc_rig_contact_measure(
+        _abi.pointer("uint8_t *", known),
+        width,
+        height,
+        _abi.pointer("float *", heights),
+        row_stride(heights),
+        pixel_size,
+        _abi.pointer("uint8_t *", mask),
+        found,
+    )
+    if status == Status.NO_RELIEF:
+        return None
+    _abi.check(status)
+    return _abi.read(RigContact, found)
+
+
+def follow_background(
+    background: npt.NDArray[np.float32],
+    photo: Photo,
+    classes: npt.NDArray[np.uint8] | None = None,
+    *,
+    rate: float = 0.03,
+    saturation: float = 0,
+    channels: Channels = "rgb",
+) -> None:
+    """Moves a background, (height, width, 3) float32 red, green, blue, by a share toward a frame where the frame is untouched.
+
+    Begin with NaN: what is not known yet takes the frame's color.
+
+    Args:
+        background: Changed in place.
+        photo: The frame.
+        classes: What RigModel.classify() gave; None where nothing is pressed in.
+        rate: The share, above 0 and up to 1.
+        saturation: As in ReliefParams.
+        channels: Those of the photo, "rgb" or "bgr".
+    """
+    picture = picture_of(photo, None, channels)
+    known = None if classes is None else np.ascontiguousarray(classes, np.uint8)
+    if known is not None and known.shape != picture.shape:
+        raise ValueError(f"classes: (height, width) of the frame, not {known.shape}")
+    into = output(background, (*picture.shape, 3))
+    of = _abi.pointer("uint8_t *", known)
+    _abi.check(
+        lib.ofc_rig_background_follow(picture.struct, of, saturation, rate, _abi.pointer("float *", into), row_stride(into))
+    )
 
 
 class Rig:
@@ -152,14 +253,14 @@ class Rig:
         Returns:
             NONE where the frame added something; otherwise why it did not, which is no error.
         """
-        picture, plane = _frame(photo, background, channels)
+        picture, below = _frame(photo, background, channels)
         given = _abi.params("ofc_relief_params", lib.ofc_relief_params_default, params)
         need = lib.ofc_relief_workspace_size(picture.width, picture.height)
         memory, why = _abi.workspace(need), ffi.new("ofc_no_relief *")
         middle = ffi.NULL if center is None else ffi.new("double[2]", list(center))
         balls = self._balls if params.ball_radius > 0 else ffi.NULL
         address = _abi.pointer("void *", memory)
-        status = lib.ofc_rig_add(self._rig, balls, picture.struct, struct_of(plane), given, middle, address, need, ffi.NULL, why)
+        status = lib.ofc_rig_add(self._rig, balls, picture.struct, struct_of(below), given, middle, address, need, ffi.NULL, why)
         if status != Status.NO_RELIEF:
             _abi.check(status)
         return NoRelief(why[0])
@@ -197,5 +298,5 @@ class Rig:
 
 
 def _frame(photo: Photo, background: Photo | None, channels: Channels) -> tuple[Picture, Picture | None]:
-    plane = None if background is None else picture_of(background, None, channels)
-    return picture_of(photo, None, channels), plane
+    below = None if background is None else picture_of(background, None, channels)
+    return picture_of(photo, None, channels), below
