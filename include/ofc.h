@@ -2199,7 +2199,7 @@ ofc_status ofc_rig_init(int32_t width, int32_t height, ofc_rig *rig, ofc_rig_bal
 /// @return OFC_STATUS_OK; OFC_STATUS_NO_RELIEF where the frame adds nothing, with the reason; OFC_STATUS_TOO_FEW_PIXELS; an argument status,
 ///     OFC_STATUS_INVALID_PARAMETER for a frame of another size and for a ball without `balls`.
 ///
-/// Stack: below 16 KiB. Reference: docs/rig.md.
+/// Stack: below 17 KiB. Reference: docs/rig.md.
 ofc_status ofc_rig_add(ofc_rig *rig, ofc_rig_balls *balls, const ofc_image *image, const ofc_image *background,
                        const ofc_relief_params *params, const double *center, void *workspace, size_t workspace_bytes,
                        ofc_relief_class *classes, ofc_no_relief *no_relief);
@@ -2350,7 +2350,7 @@ ofc_status ofc_rig_rows_begin(ofc_rig_rows *rows);
 /// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH for a row that is not one of the model's width;
 ///     OFC_STATUS_TOO_MANY_ROWS after the last one; an argument status.
 ///
-/// Stack: below 4 KiB without a background, 5 KiB with one. Reference: docs/rig.md.
+/// Stack: below 5 KiB; on a Cortex-M7 without a background below 3 KiB. Reference: docs/rig.md.
 ofc_status ofc_rig_row(const ofc_rig_model *model, ofc_rig_rows *rows, const ofc_image *row,
                        const ofc_image *background, ofc_relief_class *classes, float *normals);
 

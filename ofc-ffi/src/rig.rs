@@ -321,7 +321,7 @@ pub unsafe extern "C" fn ofc_rig_init(
 /// @return OFC_STATUS_OK; OFC_STATUS_NO_RELIEF where the frame adds nothing, with the reason; OFC_STATUS_TOO_FEW_PIXELS; an argument status,
 ///     OFC_STATUS_INVALID_PARAMETER for a frame of another size and for a ball without `balls`.
 ///
-/// Stack: below 16 KiB. Reference: docs/rig.md.
+/// Stack: below 17 KiB. Reference: docs/rig.md.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_rig_add(
     rig: *mut ofc_rig,

@@ -90,7 +90,7 @@ pub unsafe extern "C" fn ofc_rig_rows_begin(rows: *mut ofc_rig_rows) -> ofc_stat
 /// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH for a row that is not one of the model's width;
 ///     OFC_STATUS_TOO_MANY_ROWS after the last one; an argument status.
 ///
-/// Stack: below 4 KiB without a background, 5 KiB with one. Reference: docs/rig.md.
+/// Stack: below 5 KiB; on a Cortex-M7 without a background below 3 KiB. Reference: docs/rig.md.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_rig_row(
     model: *const ofc_rig_model,
