@@ -49,9 +49,9 @@ pub(super) const SMALLEST_TIMES: usize = 2;
 /// Cells at most: larger pictures have larger ones.
 pub(super) const MOST_CELLS: usize = 2400;
 
-/// Cells at least, where there is not room for those of four pixels: sixteen by twelve for pictures of that shape, three
-/// along each side of a part.
-pub(super) const FEWEST_CELLS: usize = 192;
+/// Cells at least, where there is not room for smaller ones: ten by eight for pictures of 320 by 240, with which a stream and
+/// its memory stay below 48 KiB.
+pub(super) const FEWEST_CELLS: usize = 88;
 
 // Integrability.
 
