@@ -893,7 +893,7 @@ size_t ofc_lmeds_workspace_size(int32_t width, int32_t height, const ofc_lmeds_p
 /// @return OFC_STATUS_OK; OFC_STATUS_RANK_DEFICIENT, with no output written, when the colors do not determine the six
 ///     coefficients; OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or OFC_STATUS_SATURATED; an argument status.
 ///
-/// Stack: below 12 KiB. Reference: sections 2.1-2.2, eqs. 10-12.
+/// Stack: below 14 KiB. Reference: sections 2.1-2.2, eqs. 10-12.
 ofc_status ofc_lmeds_fit(const ofc_image *image, const ofc_lmeds_params *params, void *workspace,
                          size_t workspace_bytes, ofc_color_fit *fit, ofc_inlier_test *inlier_test);
 
@@ -1693,6 +1693,7 @@ ofc_status ofc_stream_drift_get(ofc_stream *stream, ofc_stream_drift *drift);
 /// @param stream  The stream.
 /// @param row  A picture of height 1.
 /// @param normals  Output: width (x, y, z) floats, x right, y up, z toward the camera; zero where there is no normal.
+///     Computed in double precision, where ofc_normals_compute() takes single precision for most: they differ by rounding.
 /// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH; OFC_STATUS_NO_STREAM; an argument status.
 ///
 /// Reference: eq. 8.

@@ -57,7 +57,7 @@ pub unsafe extern "C" fn ofc_lmeds_workspace_size(
 /// @return OFC_STATUS_OK; OFC_STATUS_RANK_DEFICIENT, with no output written, when the colors do not determine the six
 ///     coefficients; OFC_STATUS_TOO_FEW_PIXELS, OFC_STATUS_DARK or OFC_STATUS_SATURATED; an argument status.
 ///
-/// Stack: below 12 KiB. Reference: sections 2.1-2.2, eqs. 10-12.
+/// Stack: below 14 KiB. Reference: sections 2.1-2.2, eqs. 10-12.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_lmeds_fit(
     image: *const ofc_image,

@@ -366,6 +366,7 @@ pub unsafe extern "C" fn ofc_stream_drift_get(
 /// @param stream  The stream.
 /// @param row  A picture of height 1.
 /// @param normals  Output: width (x, y, z) floats, x right, y up, z toward the camera; zero where there is no normal.
+///     Computed in double precision, where ofc_normals_compute() takes single precision for most: they differ by rounding.
 /// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH; OFC_STATUS_NO_STREAM; an argument status.
 ///
 /// Reference: eq. 8.

@@ -30,11 +30,10 @@ impl<'a> Mask<'a> {
         let row = self.bytes.get(y * self.row_stride + x..).unwrap_or_default();
         let row = row.get(..len).unwrap_or(row);
         let (groups, rest) = row.as_chunks::<4>();
-        let mut last = [0; 4];
-        for (to, from) in last.iter_mut().zip(rest) {
-            *to = *from;
+        let mut bits = 0;
+        for byte in rest.iter().rev() {
+            bits = (bits << 1) | u64::from(*byte != 0);
         }
-        let mut bits = u64::from(nonzero(u32::from_le_bytes(last)));
         for group in groups.iter().rev() {
             bits = (bits << 4) | u64::from(nonzero(u32::from_le_bytes(*group)));
         }

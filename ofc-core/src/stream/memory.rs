@@ -1,5 +1,6 @@
 //! The buffers of a stream, and how much of them a pass takes.
 
+use super::parameters::FULL;
 use crate::light::constrained_slant::WORKSPACE_LEN;
 use crate::math::arena::Need;
 use crate::orientation::joint::{self, STRIP};
@@ -15,8 +16,8 @@ pub const fn values_len(
 ) -> usize {
     let sample = room(width, height, sample_size).saturating_mul(5);
     let rows = match orientation_method {
-        OrientationMethod::Direct => row_len(width),
-        OrientationMethod::Joint => rows_len(width).saturating_add(joint::least_room(width, height)),
+        OrientationMethod::Joint if FULL => rows_len(width).saturating_add(joint::least_room(width, height)),
+        _ => row_len(width),
     };
     if sample > rows { sample } else { rows }
 }

@@ -42,8 +42,13 @@ pub(super) fn surface(
     for y in 0..state.size[1] {
         let row = half.classes.data.get(y * half.classes.row_stride..).unwrap_or_default();
         let row = row.get(..state.size[0]).unwrap_or_default();
-        for (word, bytes) in row_of_mut(saved, words, y).iter_mut().zip(row.chunks(4)) {
-            *word = bytes.iter().rev().fold(0, |word, &byte| word << 8 | u32::from(byte));
+        let (groups, rest) = row.as_chunks::<4>();
+        let mut saved = row_of_mut(saved, words, y).iter_mut();
+        for (group, word) in groups.iter().zip(&mut saved) {
+            *word = u32::from_le_bytes(*group);
+        }
+        if let Some(word) = saved.next() {
+            *word = rest.iter().rev().fold(0, |word, &byte| word << 8 | u32::from(byte));
         }
     }
     // Of four pixels the first one of the mask stands for all.
@@ -78,9 +83,13 @@ pub(super) fn surface(
         }
     }
     for y in 0..state.size[1] {
-        let row = state.classes.row_mut(y).chunks_mut(4);
-        for (bytes, word) in row.zip(row_of(saved, words, y)) {
-            bytes.iter_mut().zip(word.to_le_bytes()).for_each(|(byte, saved)| *byte = saved);
+        let (groups, rest) = state.classes.row_mut(y).as_chunks_mut::<4>();
+        let mut saved = row_of(saved, words, y).iter();
+        for (group, word) in groups.iter_mut().zip(&mut saved) {
+            *group = word.to_le_bytes();
+        }
+        if let Some(word) = saved.next() {
+            rest.iter_mut().zip(word.to_le_bytes()).for_each(|(byte, saved)| *byte = saved);
         }
     }
     Some(result)
