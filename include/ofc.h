@@ -590,7 +590,8 @@ typedef struct ofc_color_fit {
 typedef struct ofc_rank {
     /// Root mean square of the colors along their principal axes, descending, in pixel values.
     double color_deviations[3];
-    double color_noise; ///< The noise that `color_deviations` are compared with, in pixel values.
+    /// The noise that `color_deviations` are compared with, in pixel values; DBL_MAX where a given fit makes it larger.
+    double color_noise;
     /// Root mean square of the normals along their principal axes, descending; zero in directions that are not seen.
     double normal_deviations[3];
     double normal_noise; ///< The noise that `normal_deviations` are compared with.

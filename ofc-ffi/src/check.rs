@@ -88,7 +88,7 @@ pub struct ofc_check_result {
 pub struct ofc_rank {
     /// Root mean square of the colors along their principal axes, descending, in pixel values.
     pub color_deviations: [f64; 3],
-    /// The noise that `color_deviations` are compared with, in pixel values.
+    /// The noise that `color_deviations` are compared with, in pixel values; DBL_MAX where a given fit makes it larger.
     pub color_noise: f64,
     /// Root mean square of the normals along their principal axes, descending; zero in directions that are not seen.
     pub normal_deviations: [f64; 3],
@@ -103,7 +103,7 @@ pub struct ofc_rank {
 
 plain!(ofc_check_result, ofc_rank);
 
-to_c!(Rank => ofc_rank { color_deviations, color_noise, normal_deviations, normal_noise, colors, normals });
+to_c!(Rank => ofc_rank { color_deviations, normal_deviations, normal_noise, colors, normals } finite { color_noise });
 
 impl ToC<ofc_check_result> for Check {
     fn to_c(&self) -> ofc_check_result {

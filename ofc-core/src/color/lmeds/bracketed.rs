@@ -142,7 +142,8 @@ impl Problem<'_, Image<'_>> {
         let most = limit(bracket.high) * (1.0 + slack) + 1e-12;
         let limits =
             Limits { residual: Residual::new(scaled)?, bracket, least: least as f32, most: most as f32 };
-        let scale = self.scale as f32;
+        // Colors below the normal numbers have a scale above them.
+        let scale = Some(self.scale as f32).filter(|scale| scale.is_finite())?;
         let (between, edge) = workspace.split_at_mut_checked(workspace.len() / 2)?;
         let (edge, _) = edge.as_chunks_mut::<3>();
         let (mut moments, mut count, mut below) = (WindowMoments::new(), 0, 0);

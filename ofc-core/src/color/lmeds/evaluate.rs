@@ -51,8 +51,8 @@ impl<P: Pixels> Problem<'_, P> {
         self.reweighted(rejection, &inliers, moments, out).ok_or_else(|| self.rank_deficient())?;
         if let (true, Some(fit)) = (ERRORS, out) {
             fit.covariance = covariance(moments, self.scale, fit);
-            fit.pixel_noise =
-                fit.pixel_noise.max(self.pixels.of_part(|part| noise(part, &inliers, &fit.z(), workspace)));
+            let noise = self.pixels.of_part(|part| noise(part, &inliers, &fit.z(), self.scale, workspace));
+            fit.pixel_noise = fit.pixel_noise.max(noise);
         }
         Ok(())
     }

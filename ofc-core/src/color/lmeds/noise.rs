@@ -25,12 +25,19 @@ const LARGEST_CORRECTION: f64 = 3.0;
 /// Bisections for the correction.
 const STEPS: u32 = 24;
 
-/// The standard deviation of the noise in each channel, in pixel values.
+/// The standard deviation of the noise in each channel, in pixel values. `scale` brings these to about 1: squares of what they differ
+/// by may be too large or too small for single precision, and those of scaled ones are not.
 ///
 /// # Scratch
 /// One `f32` an inlier.
 #[inline(never)]
-pub(super) fn noise(pixels: &impl Pixels, inliers: &Inliers, z: &Coefficients, workspace: &mut [f32]) -> f64 {
+pub(super) fn noise(
+    pixels: &impl Pixels,
+    inliers: &Inliers,
+    z: &Coefficients,
+    scale: f64,
+    workspace: &mut [f32],
+) -> f64 {
     let c = matrix(z);
     // No square is above 4 tr C rho^T C rho where C is positive definite.
     let [c11, c22, c33, ..] = *z;
@@ -44,10 +51,10 @@ pub(super) fn noise(pixels: &impl Pixels, inliers: &Inliers, z: &Coefficients, w
             count.set(count.get() + 1);
         }
         let residual = quadratic_form(z, r, g, b) - 1.0;
-        residual * residual / slope.max(f64::MIN_POSITIVE)
+        residual * residual / slope.max(f64::MIN_POSITIVE) * (scale * scale)
     });
     let rank = median_rank(squares.len());
-    let median = take_kth_smallest(squares, rank).map_or(0.0, |square| sqrt(f64::from(square)));
+    let median = take_kth_smallest(squares, rank).map_or(0.0, |square| sqrt(f64::from(square)) / scale);
     let limit = 0.5 * (inliers.residual.high - inliers.residual.low);
     if !(median > 0.0 && limit.is_finite()) {
         return CONSISTENCY * median;

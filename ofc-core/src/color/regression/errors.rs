@@ -6,6 +6,9 @@ use crate::math::mat6::Mat6;
 /// The upper triangle of a symmetric 6x6 matrix, row by row.
 pub type Triangle = [f64; 21];
 
+/// No error is taken for larger: its square is finite, and so are sums of such squares.
+const LARGEST: f64 = 1e150;
+
 /// The whole matrix.
 #[must_use]
 pub fn whole(triangle: &Triangle) -> Mat6 {
@@ -22,6 +25,8 @@ pub fn whole(triangle: &Triangle) -> Mat6 {
 
 /// Adds the squares and products of errors.
 pub fn add_square(triangle: &mut Triangle, errors: &[f64; TERMS]) {
+    let errors = errors.map(|error| error.clamp(-LARGEST, LARGEST));
+    let errors = &errors;
     let products =
         errors.iter().enumerate().flat_map(|(i, one)| errors.iter().skip(i).map(move |other| one * other));
     for (entry, product) in triangle.iter_mut().zip(products) {
@@ -59,5 +64,20 @@ impl Moments {
         }
         add_square(&mut triangle, &bias);
         triangle
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn squares_of_any_errors_are_finite() {
+        let mut triangle = [0.0; 21];
+        for errors in [[1e200, -f64::INFINITY, 1e-200, f64::MAX, 0.0, 2.0], [f64::INFINITY; 6]] {
+            add_square(&mut triangle, &errors);
+        }
+        assert!(triangle.iter().all(|entry| entry.is_finite()), "{triangle:?}");
+        assert_eq!(whole(&triangle)[4][5], LARGEST * LARGEST);
     }
 }

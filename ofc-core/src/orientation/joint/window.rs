@@ -35,7 +35,8 @@ impl Window {
         // The trace of [N]x noise [N]x^T.
         let crossed = mat3::dot(normal, normal) * (a + b + c) - mat3::dot(normal, mat3::apply(noise, normal));
         let seen = mat3::dot(x, x) + mat3::dot(y, y);
-        let expected = (xx + yy) * crossed;
+        // Never negative but by rounding, where all noise is along the normal.
+        let expected = ((xx + yy) * crossed).max(0.0);
         let bending = (seen - expected).max(0.0);
         let share = bending / (bending + expected);
         (bending > 0.0).then_some(Self { products: [x, y], variance, normal, bending, share })
@@ -52,5 +53,24 @@ impl Window {
         let ([xx, xy, yy], [n1, n2, n3]) = (self.variance, self.normal);
         let all = [a, b, c, d, e, f, xx, xy, yy, n1, n2, n3, self.bending, self.share];
         *numbers = all.map(|number| number as f32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::rng::Rng;
+
+    #[test]
+    fn shares_are_shares_where_all_noise_is_along_the_normal() {
+        let mut rng = Rng::new(3);
+        for _ in 0..100 {
+            let normal = [(); 3].map(|()| rng.unit());
+            let noise = normal.map(|a| mat3::scale(normal, 1e-3 * a));
+            let products = [[1e-12 * f64::from(rng.below(2)), 0.0, 0.0], [0.0; 3]];
+            let quads = Quads { count: 256.0, products, ends: [0.0; 3] };
+            let share = Window::of(&quads, normal, 16.0, 1.0, &noise).map_or(0.0, |window| window.share);
+            assert!((0.0..=1.0).contains(&share), "{share}");
+        }
     }
 }
