@@ -25,12 +25,12 @@ static ofc_transfer any_transfer(void)
 
 static void transfer(void)
 {
-    const int32_t count = one_in(16) ? 65536 : 256, said = one_in(32) ? any_int() : count;
+    const int32_t usual = one_in(16) ? 65536 : 256, said = one_in(32) ? any_int() : usual;
+    const int32_t count = said == 256 || said == 65536 ? said : usual;
     float *const table = TAKE(float, count);
-    const int is_count = said == 256 || said == count;
-    if (!is_count)
+    if (said != count)
         must_be_refused();
-    if (CALL(ofc_transfer_table(any_transfer(), some_double(0.2, 4), is_count ? count : said, BAD(table, NULL)), table) == OFC_STATUS_OK)
+    if (CALL(ofc_transfer_table(any_transfer(), some_double(0.2, 4), said, BAD(table, NULL)), table) == OFC_STATUS_OK)
         floats_finite("table", table, (size_t)count);
     else
         for (int32_t i = 0; i < count; i++)
