@@ -103,7 +103,7 @@ pub struct ofc_rank {
 
 plain!(ofc_check_result, ofc_rank);
 
-to_c!(Rank => ofc_rank { color_deviations, normal_deviations, normal_noise, colors, normals } finite { color_noise });
+to_c!(Rank => ofc_rank { color_deviations, color_noise, normal_deviations, normal_noise, colors, normals });
 
 impl ToC<ofc_check_result> for Check {
     fn to_c(&self) -> ofc_check_result {
@@ -221,7 +221,10 @@ pub unsafe extern "C" fn ofc_rank_compute(
         let rank = call.output(rank)?;
         let finite = fit.is_none_or(|(z, deviation)| z.iter().all(|c| c.is_finite()) && deviation >= 0.0);
         ensure(finite, OFC_STATUS_INVALID_PARAMETER)?;
-        *rank = rank::rank(&picture, test.selector(), fit).ok_or(OFC_STATUS_TOO_FEW_PIXELS)?.to_c();
+        let mut found = rank::rank(&picture, test.selector(), fit).ok_or(OFC_STATUS_TOO_FEW_PIXELS)?;
+        // Any number may be given for the deviation of the residuals.
+        found.color_noise = found.color_noise.min(f64::MAX);
+        *rank = found.to_c();
         Ok(OFC_STATUS_OK)
     })
 }
