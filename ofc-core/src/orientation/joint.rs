@@ -26,6 +26,7 @@ mod estimate;
 mod grid;
 mod information;
 mod integrable;
+mod mixture;
 mod moments;
 mod outward;
 mod parts;

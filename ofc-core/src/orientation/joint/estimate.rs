@@ -6,6 +6,7 @@ use super::constants::{
 };
 use super::information::{inverse, trace};
 use super::integrable::Integrable;
+use super::mixture::Mixture;
 use super::outward::Outward;
 use super::result::{Evidence, Joint};
 use super::search::{angle, minimum, start};
@@ -161,6 +162,7 @@ pub(super) fn estimate(outward: &Outward, integrable: [Integrable; SCALES]) -> J
         best = sum.polish(first, STEPS);
     }
     let mut second = f64::INFINITY;
+    let mut others: Vec<Candidate, { FOLLOWED + 1 }> = Vec::new();
     for _ in 0..ROUNDS {
         // The error of the model belongs to integrability, and so does what it allows.
         for ((integrable, belief_of), eps) in integrable.iter().zip(&mut sum.belief).zip(best.eps_squared) {
@@ -169,6 +171,7 @@ pub(super) fn estimate(outward: &Outward, integrable: [Integrable; SCALES]) -> J
         }
         let mut found = sum.polish(&best, STEPS);
         second = f64::INFINITY;
+        others.clear();
         for other in &followed {
             if angle(&other.rows, &found.rows) <= SAME {
                 continue;
@@ -177,8 +180,10 @@ pub(super) fn estimate(outward: &Outward, integrable: [Integrable; SCALES]) -> J
             if angle(&other.rows, &found.rows) > APART {
                 second = second.min((other.cost - found.cost).abs());
             }
-            if other.cost < found.cost {
-                found = other;
+            let (better, worse) = if other.cost < found.cost { (other, found) } else { (found, other) };
+            found = better;
+            if others.iter().all(|known| angle(&known.rows, &worse.rows) > SAME) {
+                let _ = others.push(worse);
             }
         }
         best = found;
@@ -191,6 +196,11 @@ pub(super) fn estimate(outward: &Outward, integrable: [Integrable; SCALES]) -> J
         share if share < 1.0 - DECIDING_SHARE => Evidence::Integrability,
         _ => Evidence::Both,
     };
+    let mut mixture = Mixture::new();
+    for other in others.iter().filter(|other| angle(&other.rows, &best.rows) > SAME) {
+        mixture.add(&best.rows, &other.rows, other.cost - best.cost);
+    }
+    let covariance = mixture.covariance(&covariance, integrable.iter().map(|all| all.windows.len()).sum());
     let (rows, convexity) = outward.convex(outward.facing(best.rows));
     let covariance = seen_in(&rows, &best.rows, &covariance);
     Joint { rows, covariance, evidence, convexity, second_best: second }
