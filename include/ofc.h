@@ -1594,7 +1594,7 @@ ofc_status ofc_stream_params_default(ofc_stream_params *params);
 ///
 /// There are 4096 bytes of state and one byte for each color of the sample, and more for what takes most: 20 bytes for
 /// each color of the sample; for rows, 3456 bytes and 12 for each pixel of a row; and for rows with the joint method,
-/// 36 bytes for each pixel of a row and 116 for each of up to 192 cells. OFC_STREAM_SIZE() is no less for the default
+/// 56 bytes for each pixel of a row and 252 for each of up to 88 cells. OFC_STREAM_SIZE() is no less for the default
 /// parameters and static buffers: 47,104 bytes at 320 x 240.
 /// @param width,height  Size of the frames.
 /// @param params  The parameters that ofc_stream_init() will be given.
@@ -2537,8 +2537,8 @@ const char *ofc_version_string(void);
 #define OFC_STREAM_SIZE_FOR(width, height, sample_size)                                                                \
     ((4103 + OFC_SMALLER(OFC_PIXELS(width, height), OFC_SIZE(sample_size)) +                                           \
       OFC_LARGER(OFC_SIZE(width) * 12 + 3456,                                                                          \
-                 OFC_LARGER(OFC_SIZE(width) * 36 +                                                                     \
-                                OFC_SMALLER(OFC_PIXELS(OFC_SIZE(width) / 4, OFC_SIZE(height) / 4), OFC_SIZE(192)) * 116, \
+                 OFC_LARGER(OFC_SIZE(width) * 48 + OFC_SIZE(width) / 4 * 32 +                                          \
+                                OFC_SMALLER(OFC_PIXELS(OFC_SIZE(width) / 4, OFC_SIZE(height) / 4), OFC_SIZE(88)) * 252,  \
                             OFC_SMALLER(OFC_PIXELS(width, height), OFC_SIZE(sample_size)) * 20))) / 8 * 8)
 /// The larger of two sizes.
 #define OFC_LARGER(a, b) ((a) > (b) ? (a) : (b))

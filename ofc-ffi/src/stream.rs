@@ -148,7 +148,7 @@ pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_param
 ///
 /// There are 4096 bytes of state and one byte for each color of the sample, and more for what takes most: 20 bytes for
 /// each color of the sample; for rows, 3456 bytes and 12 for each pixel of a row; and for rows with the joint method,
-/// 36 bytes for each pixel of a row and 116 for each of up to 192 cells. OFC_STREAM_SIZE() is no less for the default
+/// 56 bytes for each pixel of a row and 252 for each of up to 88 cells. OFC_STREAM_SIZE() is no less for the default
 /// parameters and static buffers: 47,104 bytes at 320 x 240.
 /// @param width,height  Size of the frames.
 /// @param params  The parameters that ofc_stream_init() will be given.
@@ -201,7 +201,7 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 /// @param stream  Output: the stream, at the address of its memory.
 /// @return OFC_STATUS_OK; an argument status.
 ///
-/// Stack, for this call and every other one that takes a stream: below 4 KiB with the direct method, 20 KiB with the
+/// Stack, for this call and every other one that takes a stream: below 6 KiB with the direct method, and 4 KiB on a Cortex-M7; below 20 KiB with the
 /// joint method.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_init(

@@ -447,7 +447,7 @@ static void rows_are_seen(void **state)
         assert_true(fabs(contact.center[0] - 78) < 1 && fabs(contact.center[1] - 60) < 1);
         int pixels = 0;
         for (int i = 0; i < ALL; i++)
-            pixels += classes[0][i] == OFC_RELIEF_CONTACT;
+            pixels += classes[i / ACROSS][i % ACROSS] == OFC_RELIEF_CONTACT;
         assert_true(fabs(contact.area - 0.25 * pixels) < 1e-9 && isnan(contact.peak) && contact.peak_place[0] == -1);
         assert_true(contact.bounds[0] < 60 && contact.bounds[1] < 42 && contact.bounds[2] > 96 && contact.bounds[3] > 78);
     }

@@ -36,7 +36,9 @@ static void answers_are_those_of_solve(void **state)
         assert_int_equal(ofc_stream_normals_row(stream, &row, out.normals), OFC_STATUS_OK);
         assert_int_equal(ofc_stream_normals_row_packed(stream, &row, out.packed), OFC_STATUS_OK);
         assert_int_equal(ofc_stream_inliers_row(stream, &row, out.flags), OFC_STATUS_OK);
-        assert_memory_equal(out.normals, normals[y], sizeof normals[y]);
+        /* A picture's normals are computed in single precision, a row's in double. */
+        for (int i = 0; i < 3 * WIDTH; i++)
+            assert_true(fabs(out.normals[i] - normals[y][i / 3][i % 3]) < 1e-5);
         assert_memory_equal(out.flags, mask[y], sizeof mask[y]);
         for (int i = 0; i < 3 * WIDTH; i++) {
             const double byte = mask[y][i / 3] ? (normals[y][i / 3][i % 3] + 1) * 127.5 : 0;

@@ -75,7 +75,7 @@ static void look(const ofc_rig_model *model)
         change(rows, sizeof *rows, 1 + below(8));
     for (int i = 0; i < 3; i++) {
         const struct picture frame = picture_sized(width, 1);
-        if (CALL(ofc_rig_row(BAD(model, NULL), BAD(rows, NULL), IMAGE, NULL, below(2) ? NULL : classes, BAD(normals, NULL)), rows, classes,
+        if (CALL(ofc_rig_row(BAD(model, NULL), BAD(rows, NULL), IMAGE, NULL, below(2) ? NULL : classes, one_in(4) ? NULL : normals), rows, classes,
                  normals) == OFC_STATUS_OK)
             floats_finite_or_nan("normals of a row", normals, 3 * (size_t)width);
     }

@@ -97,7 +97,7 @@ pub fn divide(
                 result.saturated += 1;
             } else {
                 for (((slot, c), b), mean) in slot.iter_mut().zip(color).zip(below).zip(scale) {
-                    *slot = if c.is_finite() { c / b * mean } else { f32::NAN };
+                    *slot = if c.is_finite() { (c / b * mean).clamp(-f32::MAX, f32::MAX) } else { f32::NAN };
                 }
                 result.used += 1;
             }

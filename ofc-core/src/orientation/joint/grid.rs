@@ -43,7 +43,7 @@ const fn cut(width: usize, height: usize, most: usize) -> [usize; 3] {
 }
 
 /// Numbers of the two rows of smallest squares that quads are made of.
-const fn rows_len(width: usize) -> usize {
+pub(super) const fn rows_len(width: usize) -> usize {
     width / SIDE * 2 * SQUARE_NUMBERS
 }
 

@@ -41,7 +41,9 @@ impl Strip {
 
 /// How many `f32` rows are summed into, at least, where they are too many for cells of four pixels.
 pub(crate) const fn least_room(width: usize, height: usize) -> usize {
-    grid::len(width, height, FEWEST_CELLS)
+    let squares = (width / SIDE).saturating_mul(height / SIDE);
+    let cells = if squares < FEWEST_CELLS { squares } else { FEWEST_CELLS };
+    cells * grid::SUMS + grid::rows_len(width)
 }
 
 /// Sums over the rows of a picture, four by four: all that its orientation is found from where there is room for cells of

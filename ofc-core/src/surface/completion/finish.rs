@@ -105,11 +105,11 @@ pub(super) fn finish(state: &mut State, known: &Known, duals: &Duals, model: &Mo
                     state.classes.set(x, y, if is_doubtful { byte | DOUBTFUL } else { byte });
                 }
                 ONE_LIGHT => {
-                    state.weights.set(x, y, guess + (GROWTH_OF_ONE_LIGHT * away).to_radians());
+                    state.weights.set(x, y, (guess + (GROWTH_OF_ONE_LIGHT * away).to_radians()).min(PI));
                     state.classes.set(x, y, byte & !(NOTE | DOUBTFUL));
                 }
                 INTERPOLATED => {
-                    state.weights.set(x, y, guess + (GROWTH_OF_NOTHING * away).to_radians());
+                    state.weights.set(x, y, (guess + (GROWTH_OF_NOTHING * away).to_radians()).min(PI));
                     state.classes.set(x, y, byte & !NOTE);
                 }
                 _ => {}
