@@ -1638,7 +1638,7 @@ size_t ofc_stream_size(int32_t width, int32_t height, const ofc_stream_params *p
 /// @param stream  Output: the stream, at the address of its memory.
 /// @return OFC_STATUS_OK; an argument status.
 ///
-/// Stack, for this call and every other one that takes a stream: below 4 KiB with the direct method, 20 KiB with the
+/// Stack, for this call and every other one that takes a stream: below 6 KiB with the direct method, and 4 KiB on a Cortex-M7; below 20 KiB with the
 /// joint method.
 ofc_status ofc_stream_init(int32_t width, int32_t height, ofc_pixel_format format, const ofc_stream_params *params,
                            void *memory, size_t memory_bytes, ofc_stream **stream);
