@@ -314,7 +314,8 @@ def test_a_stream_finds_the_same_and_follows(scene: ofc.Rendering) -> None:
     assert np.median(angles(frames[-1].normals, scene.normals)) < 4
     assert stream.drift().refined
     solution = stream.solution(scene.pixels)
-    assert (solution.normals() == frames[-1].normals).all()
+    # A picture's normals are computed in single precision, a row's in double.
+    assert np.allclose(solution.normals(), frames[-1].normals, rtol=0, atol=1e-5)
     row = scene.pixels[45:46]
     assert (stream.normals_row(row) == frames[-1].normals[45]).all()
     packed = np.rint(255 * (frames[-1].normals[45].astype(np.float64) + 1) / 2)
