@@ -1569,8 +1569,9 @@ typedef int32_t ofc_stream_pass;
 #define OFC_PASS_TILTS 2  ///< A cold start estimates the tilts; with one candidate for the slants it finds F.
 #define OFC_PASS_SLANTS 3 ///< A cold start chooses among the candidates for the slants, and finds F.
 #define OFC_PASS_REFINE 4 ///< F has been found, and the frame refines it.
-/// A cold start with the joint method looks at integrability and at how normals point outward, and finds F.
-#define OFC_PASS_JOINT 5
+/// A cold start with the joint method looks at how normals point outward; where the sample holds all pixels it finds F.
+#define OFC_PASS_OUTWARD 5
+#define OFC_PASS_INTEGRABILITY 6 ///< A cold start with the joint method looks at integrability, and finds F.
 
 /// What the last frame of OFC_PASS_REFINE says about the model from before it.
 typedef struct ofc_stream_drift {
@@ -1594,7 +1595,7 @@ ofc_status ofc_stream_params_default(ofc_stream_params *params);
 ///
 /// There are 4096 bytes of state and one byte for each color of the sample, and more for what takes most: 20 bytes for
 /// each color of the sample; for rows, 3456 bytes and 12 for each pixel of a row; and for rows with the joint method,
-/// 56 bytes for each pixel of a row and 252 for each of up to 88 cells. OFC_STREAM_SIZE() is no less for the default
+/// 36 bytes for each pixel of a row and 116 for each of up to 192 cells. OFC_STREAM_SIZE() is no less for the default
 /// parameters and static buffers: 47,104 bytes at 320 x 240.
 /// @param width,height  Size of the frames.
 /// @param params  The parameters that ofc_stream_init() will be given.
@@ -1615,13 +1616,13 @@ size_t ofc_stream_size(int32_t width, int32_t height, const ofc_stream_params *p
 ///     }
 ///     ofc_status status = ofc_stream_end(stream, &pass);
 ///
-/// A cold start begins with a pass over colors. With the joint method one pass over outward normals and integrability
-/// follows; with the direct method a pass over tilts, and one over slants where eqs. 25 have several roots. All of them
+/// A cold start begins with a pass over colors. With the joint method passes over outward normals and integrability
+/// follow; with the direct method a pass over tilts, and one over slants where eqs. 25 have several roots. All of them
 /// take the same frame, or consecutive frames of a scene at rest. Then F is known. A few rows of every further frame
 /// refine it; for the other rows ofc_stream_row() does next to nothing.
 ///
-/// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of
-/// windows as small as the memory allows. Where the sample holds all pixels, or with the direct method all usable pixels, and
+/// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of as
+/// many windows as the memory holds. Where the sample holds all pixels, or with the direct method all usable pixels, and
 /// there are fewer than 131,072 of them, above which ofc_solve() takes some numbers from a sample of the rows,
 /// the solution is equal to that of ofc_solve() bit by bit, but for the integral of a lone candidate, which is not
 /// computed (infinite), and but for `reason` and what follows from it: streams do not look for reasons. Without the
@@ -1638,7 +1639,7 @@ size_t ofc_stream_size(int32_t width, int32_t height, const ofc_stream_params *p
 /// @param stream  Output: the stream, at the address of its memory.
 /// @return OFC_STATUS_OK; an argument status.
 ///
-/// Stack, for this call and every other one that takes a stream: below 6 KiB with the direct method, and 4 KiB on a Cortex-M7; below 20 KiB with the
+/// Stack, for this call and every other one that takes a stream: below 4 KiB with the direct method, 20 KiB with the
 /// joint method.
 ofc_status ofc_stream_init(int32_t width, int32_t height, ofc_pixel_format format, const ofc_stream_params *params,
                            void *memory, size_t memory_bytes, ofc_stream **stream);
@@ -2537,8 +2538,8 @@ const char *ofc_version_string(void);
 #define OFC_STREAM_SIZE_FOR(width, height, sample_size)                                                                \
     ((4103 + OFC_SMALLER(OFC_PIXELS(width, height), OFC_SIZE(sample_size)) +                                           \
       OFC_LARGER(OFC_SIZE(width) * 12 + 3456,                                                                          \
-                 OFC_LARGER(OFC_SIZE(width) * 48 + OFC_SIZE(width) / 4 * 32 +                                          \
-                                OFC_SMALLER(OFC_PIXELS(OFC_SIZE(width) / 4, OFC_SIZE(height) / 4), OFC_SIZE(88)) * 252,  \
+                 OFC_LARGER(OFC_SIZE(width) * 36 +                                                                     \
+                                OFC_SMALLER(OFC_PIXELS(OFC_SIZE(width) / 4, OFC_SIZE(height) / 4), OFC_SIZE(192)) * 116, \
                             OFC_SMALLER(OFC_PIXELS(width, height), OFC_SIZE(sample_size)) * 20))) / 8 * 8)
 /// The larger of two sizes.
 #define OFC_LARGER(a, b) ((a) > (b) ? (a) : (b))

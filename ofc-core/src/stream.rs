@@ -4,9 +4,10 @@
 //! colors keeps a stratified sample, and ends with the model: everything that medians and fits are for is computed on the
 //! sample. The pass over its tilts sums the differences between neighboring inliers, of this row and the one before it,
 //! and ends with F where there is one candidate for the slants. Where there are several, a pass over the slants sums the
-//! integral (15) of all of them at once, and ends with F. With the joint method ([`OrientationMethod::Joint`](crate::solve::OrientationMethod::Joint)) one pass takes their
-//! place: it sums moments of the normals and products of neighbors over cells, four rows at a time, as small as the memory allows, and
-//! ends with F. Then normals and inliers of any row can be had, and one pass over a few
+//! integral (15) of all of them at once, and ends with F. With the joint method ([`OrientationMethod::Joint`](crate::solve::OrientationMethod::Joint)) two passes take their
+//! place: one sums the moments of the normals over cells, four rows at a time, for what outward normals say, and one over
+//! windows of several sizes, as many as the memory holds, for integrability; it ends with F. Where the memory holds cells
+//! of four pixels the first of them ends with F. Then normals and inliers of any row can be had, and one pass over a few
 //! rows of a later frame refines the model.
 //!
 //! Where the sample has room for all pixels, and these are fewer than 131,072, the result is that of
@@ -112,8 +113,9 @@ impl<'m> Stream<'m> {
             Pass::Colors => state.begin_colors(),
             Pass::Tilts => state.begin_tilts(),
             Pass::Slants => state.begin_slants(),
-            Pass::Joint if FULL => state.begin_outward(&mut self.memory),
-            Pass::Joint => {}
+            Pass::Outward if FULL => state.begin_outward(&mut self.memory),
+            Pass::Integrability if FULL => state.begin_integrability(&mut self.memory),
+            Pass::Outward | Pass::Integrability => {}
             Pass::Refine => state.begin_refine(),
         }
         state.row = Some(0);
@@ -139,8 +141,9 @@ impl<'m> Stream<'m> {
             Pass::Colors => state.row_colors(y, row, &mut self.memory),
             Pass::Tilts => state.row_tilts(y, row, &mut self.memory),
             Pass::Slants => state.row_slants(y, row, &mut self.memory),
-            Pass::Joint if FULL => state.row_outward(y, row, &mut self.memory),
-            Pass::Joint => {}
+            Pass::Outward if FULL => state.row_outward(y, row, &mut self.memory),
+            Pass::Integrability if FULL => state.row_integrability(y, row, &mut self.memory),
+            Pass::Outward | Pass::Integrability => {}
             Pass::Refine => state.row_refine(y, row, &mut self.memory),
         }
         state.row = Some(y + 1);
@@ -163,8 +166,9 @@ impl<'m> Stream<'m> {
             Pass::Colors => state.end_colors(&mut self.memory)?,
             Pass::Tilts => state.end_tilts(&mut self.memory),
             Pass::Slants => state.end_slants(),
-            Pass::Joint if FULL => state.end_outward(&mut self.memory),
-            Pass::Joint => {}
+            Pass::Outward if FULL => state.end_outward(&mut self.memory),
+            Pass::Integrability if FULL => state.end_integrability(&mut self.memory),
+            Pass::Outward | Pass::Integrability => {}
             Pass::Refine => state.end_refine(&mut self.memory),
         }
         Ok(state.pass)

@@ -15,8 +15,10 @@ pub const OFC_PASS_TILTS: i32 = 2;
 pub const OFC_PASS_SLANTS: i32 = 3;
 /// F has been found, and the frame refines it.
 pub const OFC_PASS_REFINE: i32 = 4;
-/// A cold start with the joint method looks at integrability and at how normals point outward, and finds F.
-pub const OFC_PASS_JOINT: i32 = 5;
+/// A cold start with the joint method looks at how normals point outward; where the sample holds all pixels it finds F.
+pub const OFC_PASS_OUTWARD: i32 = 5;
+/// A cold start with the joint method looks at integrability, and finds F.
+pub const OFC_PASS_INTEGRABILITY: i32 = 6;
 
 /// What a stream does. Set by ofc_stream_params_default().
 #[repr(C)]
@@ -64,7 +66,8 @@ constants!(Pass = {
     Colors: OFC_PASS_COLORS,
     Tilts: OFC_PASS_TILTS,
     Slants: OFC_PASS_SLANTS,
-    Joint: OFC_PASS_JOINT,
+    Outward: OFC_PASS_OUTWARD,
+    Integrability: OFC_PASS_INTEGRABILITY,
     Refine: OFC_PASS_REFINE,
 });
 to_c!(Params => ofc_stream_params { solve, refine_pixels; min_inlier_ratio: smallest_share } zero { reserved });
@@ -148,7 +151,7 @@ pub unsafe extern "C" fn ofc_stream_params_default(params: *mut ofc_stream_param
 ///
 /// There are 4096 bytes of state and one byte for each color of the sample, and more for what takes most: 20 bytes for
 /// each color of the sample; for rows, 3456 bytes and 12 for each pixel of a row; and for rows with the joint method,
-/// 56 bytes for each pixel of a row and 252 for each of up to 88 cells. OFC_STREAM_SIZE() is no less for the default
+/// 36 bytes for each pixel of a row and 116 for each of up to 192 cells. OFC_STREAM_SIZE() is no less for the default
 /// parameters and static buffers: 47,104 bytes at 320 x 240.
 /// @param width,height  Size of the frames.
 /// @param params  The parameters that ofc_stream_init() will be given.
@@ -178,13 +181,13 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 ///     }
 ///     ofc_status status = ofc_stream_end(stream, &pass);
 ///
-/// A cold start begins with a pass over colors. With the joint method one pass over outward normals and integrability
-/// follows; with the direct method a pass over tilts, and one over slants where eqs. 25 have several roots. All of them
+/// A cold start begins with a pass over colors. With the joint method passes over outward normals and integrability
+/// follow; with the direct method a pass over tilts, and one over slants where eqs. 25 have several roots. All of them
 /// take the same frame, or consecutive frames of a scene at rest. Then F is known. A few rows of every further frame
 /// refine it; for the other rows ofc_stream_row() does next to nothing.
 ///
-/// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of
-/// windows as small as the memory allows. Where the sample holds all pixels, or with the direct method all usable pixels, and
+/// Medians and fits of a cold start are those of a stratified sample of the colors, and integrability is that of as
+/// many windows as the memory holds. Where the sample holds all pixels, or with the direct method all usable pixels, and
 /// there are fewer than 131,072 of them, above which ofc_solve() takes some numbers from a sample of the rows,
 /// the solution is equal to that of ofc_solve() bit by bit, but for the integral of a lone candidate, which is not
 /// computed (infinite), and but for `reason` and what follows from it: streams do not look for reasons. Without the
@@ -201,7 +204,7 @@ pub unsafe extern "C" fn ofc_stream_size(width: i32, height: i32, params: *const
 /// @param stream  Output: the stream, at the address of its memory.
 /// @return OFC_STATUS_OK; an argument status.
 ///
-/// Stack, for this call and every other one that takes a stream: below 6 KiB with the direct method, and 4 KiB on a Cortex-M7; below 20 KiB with the
+/// Stack, for this call and every other one that takes a stream: below 4 KiB with the direct method, 20 KiB with the
 /// joint method.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_stream_init(

@@ -151,7 +151,7 @@ static void stack_use(void **state)
     for (int call = 0; call < CALLS; call++) {
         print_message("%s: %zu bytes of stack\n", names[call], most[call] - most[NOTHING]);
 #ifndef __SANITIZE_ADDRESS__
-        const size_t limit = params.solve.orientation_method == OFC_ORIENTATION_JOINT && (call == END || call == ROW) ? JOINT_STACK : 6144;
+        const size_t limit = params.solve.orientation_method == OFC_ORIENTATION_JOINT && call == END ? JOINT_STACK : 4096;
         assert_true(most[call] - most[NOTHING] <= limit);
 #endif
     }

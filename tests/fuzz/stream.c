@@ -56,7 +56,7 @@ static void begin(void)
     ofc_status status;
     ofc_stream_pass *const pass[TWO] = {TAKE(ofc_stream_pass, 1), TAKE(ofc_stream_pass, 1)};
     BOTH(status, ofc_stream_begin(stream, pass[i]), pass[0], pass[1]);
-    if (status != OFC_STATUS_OK || *pass[0] != *pass[1] || *pass[0] < OFC_PASS_COLORS || *pass[0] > OFC_PASS_JOINT)
+    if (status != OFC_STATUS_OK || *pass[0] != *pass[1] || *pass[0] < OFC_PASS_COLORS || *pass[0] > OFC_PASS_INTEGRABILITY)
         fail("a frame began with %d, passes %d and %d", status, *pass[0], *pass[1]);
     is_open = 1;
     next_row = 0;

@@ -56,7 +56,7 @@ impl Camera {
     /// What the end of a pass says.
     pub fn cold(&mut self, image: &Image) -> Result<Pass, StreamError> {
         let mut pass = self.frame(image)?;
-        for expected in [Pass::Joint, Pass::Tilts, Pass::Slants] {
+        for expected in [Pass::Outward, Pass::Integrability, Pass::Tilts, Pass::Slants] {
             if pass == expected {
                 pass = self.frame(image)?;
             }

@@ -4,6 +4,8 @@
 //! compared through a closure, and no bound is left to a pivot's luck. NaN sorts above infinity (or below minus
 //! infinity when its sign bit is set), so even that input has an answer; the pipeline never feeds it.
 
+use core::mem;
+
 const RADIX_BITS: u32 = 8;
 const BUCKETS: usize = 1 << RADIX_BITS;
 const PASSES: u32 = u32::BITS / RADIX_BITS;
@@ -80,7 +82,7 @@ pub fn take_kth_smallest_within(values: &mut [f32], rank: usize, [low, high]: [f
     }
 }
 
-/// [`keep_within`] what a sample says. `None`, with nothing moved, also where there are too few for that to pay.
+/// [`keep_within`] what a sample says. `None` also where there are too few for that to pay.
 fn drop_far(values: &mut [f32], rank: usize) -> Option<(usize, usize)> {
     const SAMPLE: usize = 512;
     /// Five deviations of the rank that a median has in a sample.
@@ -89,13 +91,14 @@ fn drop_far(values: &mut [f32], rank: usize) -> Option<(usize, usize)> {
     if stride < 8 {
         return None;
     }
-    let mut sample = [0.0; SAMPLE];
-    for (out, value) in sample.iter_mut().zip(values.iter().step_by(stride.max(1))) {
-        *out = *value;
+    // It goes to the front, where it takes no room.
+    let (sample, others) = values.split_at_mut_checked(SAMPLE)?;
+    for (first, value) in sample.iter_mut().zip(others.iter_mut().step_by(stride - 1)) {
+        mem::swap(first, value);
     }
     let middle = rank.checked_div(stride)?;
-    let low = kth_smallest(&sample, middle.saturating_sub(SLACK))?;
-    let high = kth_smallest(&sample, (middle + SLACK).min(SAMPLE - 1))?;
+    let low = kth_smallest(sample, middle.saturating_sub(SLACK))?;
+    let high = kth_smallest(sample, (middle + SLACK).min(SAMPLE - 1))?;
     keep_within(values, rank, low, high)
 }
 

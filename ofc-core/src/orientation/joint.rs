@@ -5,9 +5,8 @@
 //! each other, each by an uncertainty estimated from the picture itself:
 //!
 //! - *Integrability* (`integrable.rs`). For a surface, `n3 n1_y - n1 n3_y = n3 n2_x - n2 n3_x`, which is linear in the first two
-//!   rows, `r1.(N x N_x) + r2.(N x N_y) = 0`. Products of neighbors (`quads.rs`) are summed over windows, without the bias that
-//!   curvature gives to planes; noise and an error of the model relative to curvature, which is fitted, say how likely they are, and
-//!   that error bounds what all of them together count.
+//!   rows, `r1.(N x N_x) + r2.(N x N_y) = 0`. N and its gradients are fitted to windows of 8 to 64 pixels; what noise adds to the
+//!   squares is taken off, and windows in which the condition fails lose weight.
 //! - *Outward normals* (`outward.rs`). On the whole a normal points away from the middle of its surface: the slopes of N over
 //!   position are to be along x and y. Pentland's tilts ask this of mean gradients, which the border of the surface alone decides;
 //!   regression listens to all of it. Both are used. Where the surface looks like a part of a sphere about the middle of all of it,
@@ -20,41 +19,36 @@
 //! # Reference
 //! Sections 2.3-2.4 (eqs. 13-15) and 3.2 (eqs. 20-21), which this combines.
 
+mod area;
 mod cells;
 mod constants;
-mod estimate;
+mod form;
 mod grid;
 mod information;
 mod integrable;
-mod mixture;
 mod moments;
 mod outward;
-mod parts;
-mod pixels;
-mod quads;
+mod record;
 mod result;
 mod round;
+mod scales;
 mod search;
-mod squares;
 mod sums;
-mod used;
-mod value;
-mod window;
 mod windows;
 
 pub use constants::APART;
 pub use result::{Evidence, Joint};
 
-pub(crate) use sums::{CellSums, STRIP, Strip, least_room};
+pub(crate) use sums::{CellSums, STRIP, WindowSums, least_room};
 
 use crate::color::inliers::Inliers;
 use crate::math::mat3::Mat3;
 use crate::picture::{Image, WINDOW, Window};
 
-/// How many `f32` [`estimate`] needs for a picture of this size: about one a pixel, and no more than for 2,400 cells and two lines.
+/// How many `f32` [`estimate`] needs for a picture of this size: at most two a pixel.
 #[must_use]
 pub const fn workspace_len(width: usize, height: usize) -> usize {
-    grid::len(width, height, constants::MOST_CELLS)
+    grid::count(width, height).saturating_mul(grid::ROOM)
 }
 
 /// The transformation of the normals `root` rho of the inliers; `None` where they are too few or too scattered to say
@@ -70,23 +64,20 @@ pub fn estimate(image: &Image, inliers: &Inliers, root: &Mat3, workspace: &mut [
     let len = workspace_len(width, height);
     let workspace = workspace.get_mut(..len)?;
     let mut sums = CellSums::begin(width, height, len, workspace)?;
-    let mut windows = [const { Window::new() }; STRIP + 1];
+    let mut windows = [const { Window::new() }; STRIP];
     for y in (0..height).step_by(STRIP) {
         for x in (0..width).step_by(WINDOW) {
-            let mut strip = Strip::default();
-            for (i, window) in windows.iter_mut().enumerate() {
-                // The row above the strip comes first.
-                let Some(row) = (y + i).checked_sub(1).filter(|&row| row < height) else { continue };
-                image.read(x, row, window);
-                let exposed = strip.see(i, window, inliers);
-                if i > 0 {
-                    sums.see(x, row, exposed);
-                }
+            let mut bits = [0; STRIP];
+            for ((y, window), bits) in (y..height).zip(&mut windows).zip(&mut bits) {
+                image.read(x, y, window);
+                let exposed = inliers.usable.exposed(window);
+                sums.see(x, y, exposed);
+                *bits = inliers.bits_among(window, exposed);
             }
             if y + STRIP <= height {
-                let [.., last] = &windows;
+                let [first, ..] = &windows;
                 let color = |row: usize, i| windows.get(row).map_or([0.0; 3], |window| window.pixel(i));
-                sums.add([x, y], last.len, &strip, root, color, workspace);
+                sums.add([x, y], first.len, bits, root, color, workspace);
             }
         }
     }

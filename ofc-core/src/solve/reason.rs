@@ -179,7 +179,7 @@ fn misfit(solution: &Solution, survey: &Survey) -> Option<Finding> {
 /// What an answer does not know of its orientation.
 fn orientation(params: &Params, solution: &Solution) -> Option<Finding> {
     /// Of twenty-five parts that are convex or hollow by chance, the sum is within this share of the whole mostly.
-    const CLEAR: f64 = 0.25;
+    const CLEAR: f64 = 0.2;
     match &solution.joint {
         None if params.is_joint() => {
             Some(Finding::of(Reason::TooFewPixels, solution.inlier_count as f64, 0.0))

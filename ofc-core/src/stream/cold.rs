@@ -61,7 +61,7 @@ impl State {
         let found = self.search(memory);
         let fit = self.fit(found, memory);
         let has_model = self.model(fit, memory).map_err(StreamError::Fit)?;
-        let next = if FULL && self.params.solve.is_joint() { Pass::Joint } else { Pass::Tilts };
+        let next = if FULL && self.params.solve.is_joint() { Pass::Outward } else { Pass::Tilts };
         self.go_on(has_model, next);
         Ok(())
     }

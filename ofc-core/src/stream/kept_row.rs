@@ -33,15 +33,10 @@ fn copy(to: &mut [f32], from: &[f32], count: usize) {
 
 /// The pixels that are kept of the row before, from column `x` on.
 pub(super) fn kept(x: usize, width: usize, memory: &Memory, window: &mut Window) {
-    kept_window(x, width, memory.values, window);
-}
-
-/// The pixels that are kept of one row, from column `x` on.
-pub(super) fn kept_window(x: usize, width: usize, values: &[f32], window: &mut Window) {
     window.x = x;
     window.len = width.saturating_sub(x).min(WINDOW);
     window.masked = first_bits(window.len);
     for (channel, out) in window.color.iter_mut().enumerate() {
-        copy(out, values.get(channel * width + x..).unwrap_or_default(), window.len);
+        copy(out, memory.values.get(channel * width + x..).unwrap_or_default(), window.len);
     }
 }

@@ -46,9 +46,9 @@ pub(super) const fn row_len(width: usize) -> usize {
     width.saturating_mul(3)
 }
 
-/// How many `f32` the rows above a strip's last one are, with that above the strip.
+/// How many `f32` the rows above a strip's last one are.
 pub(super) const fn rows_len(width: usize) -> usize {
-    width.saturating_mul(3 * STRIP)
+    width.saturating_mul(3 * (STRIP - 1))
 }
 
 /// How many bytes [`Memory::places`] needs.

@@ -13,8 +13,10 @@ pub enum Pass {
     Tilts,
     /// The choice among the candidate slants.
     Slants,
-    /// How normals point outward and that they are those of one surface: the orientation as a whole.
-    Joint,
+    /// How normals point outward, for the orientation as a whole; with room for all windows, the orientation.
+    Outward,
+    /// That they are those of one surface, and the orientation.
+    Integrability,
     /// F is there: the frame refines it.
     Refine,
 }

@@ -12,13 +12,12 @@ use crate::light::tilt::pentland;
 use crate::math::arena::Need;
 use crate::math::mat3::Mat3;
 use crate::orientation::integrability;
-use crate::orientation::joint::CellSums;
+use crate::orientation::joint::{CellSums, WindowSums};
 use crate::picture::{Image, MAX_PIXELS, PixelCounts, Sample, Usable};
 use crate::solve::{Outcome, Solution};
 
 /// What one pass holds for itself or for the next one.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "there is no heap to put the candidates in")]
 pub(super) enum Held {
     Nothing,
     /// F^-1 of every candidate, and its integral.
@@ -27,6 +26,7 @@ pub(super) enum Held {
         integrals: [integrability::Sum; MAX_CANDIDATES],
     },
     CellSums(CellSums),
+    WindowSums(WindowSums),
 }
 
 /// What a stream remembers beside its buffers.

@@ -258,7 +258,8 @@ class Pass(enum.IntEnum):
     TILTS = 2
     SLANTS = 3
     REFINE = 4
-    JOINT = 5
+    OUTWARD = 5
+    INTEGRABILITY = 6
 
 
 class Transfer(enum.IntEnum):

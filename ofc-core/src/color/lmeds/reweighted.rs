@@ -5,7 +5,7 @@ use super::problem::Problem;
 use super::result::Fit;
 use crate::color::ellipsoid::{Coefficients, quadratic_form};
 use crate::color::inliers::Inliers;
-use crate::color::regression::{self, Estimate, LeastSquares, Moments, TERMS, Triangle};
+use crate::color::regression::{self, Estimate, LeastSquares, Moments, TERMS};
 use crate::color::rounding;
 use crate::math::mat3::symmetric_eigen;
 use crate::picture::{Pixels, for_each_bit};
@@ -81,20 +81,21 @@ pub(super) fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
     symmetric_eigen(&moments.second_moments()).values.map(|square| sqrt(square.max(0.0)) / scale)
 }
 
-/// The expected squares and products of the errors of a fit made of these sums of colors times `scale`. Its inliers are those of
-/// its robust form, which pulls it: as much as the two differ may be left of that form's error.
+/// Puts the expected squares and products of the errors of a fit made of these sums of colors times `scale` into it. Its inliers are
+/// those of its robust form, which pulls it: as much as the two differ may be left of that form's error.
 #[inline(never)]
-pub(super) fn covariance(moments: &Moments, scale: f64, fit: &Fit) -> Triangle {
-    let Some(solved) = moments.solve() else { return [0.0; 21] };
+pub(super) fn add_covariance(moments: &Moments, scale: f64, fit: &mut Fit) {
+    let Some(solved) = moments.solve() else {
+        fit.covariance = [0.0; 21];
+        return;
+    };
     let variance = fit.residual_deviation * fit.residual_deviation;
-    let mut covariance =
-        moments.error_covariance(&solved, variance, fit.noise_deviation * scale, scale * scale);
+    fit.covariance = moments.error_covariance(&solved, variance, fit.noise_deviation * scale, scale * scale);
     let mut difference = fit.robust;
     for (entry, estimate) in difference.iter_mut().zip(&fit.coefficients) {
         *entry -= estimate.value;
     }
-    regression::add_square(&mut covariance, &difference);
-    covariance
+    regression::add_square(&mut fit.covariance, &difference);
 }
 
 /// Least squares over inliers.

@@ -1,17 +1,15 @@
-//! Cells of a picture, what they say of its noise, and how two by two of them make a window.
+//! Cells of a picture, what they say of its noise, and how two by two of them make the next size.
 
-use super::constants::{CREASE, SCALES, SIDE};
+use super::area::{Area, Parts};
+use super::constants::{CREASE, SIDE};
 use super::grid::{GRADIENTS, Grid, RESIDUALS};
 use super::moments::{Moments, NUMBERS};
-use super::parts::Parts;
-use super::quads::{self, Quads};
-use crate::math::mat3::{self, Mat3};
+use crate::math::mat3::Mat3;
 use crate::math::select::{kth_smallest, median_rank};
 
 /// Cells whose sums are complete.
 pub(super) struct Cells<'w> {
-    numbers: &'w [f32],
-    quads: &'w [f32],
+    numbers: &'w mut [f32],
     width: usize,
     height: usize,
     side: usize,
@@ -21,9 +19,8 @@ impl<'w> Cells<'w> {
     /// The cells of a grid, and what lies behind them: residuals, gradients and scratch.
     pub fn of(grid: &Grid, numbers: &'w mut [f32]) -> Option<(Self, &'w mut [f32])> {
         let (numbers, rest) = numbers.split_at_mut_checked(grid.count() * NUMBERS)?;
-        let (quads, rest) = rest.split_at_mut_checked(grid.count() * SCALES * quads::NUMBERS)?;
-        let Grid { width, height, times, .. } = *grid;
-        Some((Self { numbers, quads, width, height, side: SIDE * times.get() }, rest))
+        let Grid { width, height, times } = *grid;
+        Some((Self { numbers, width, height, side: SIDE * times.get() }, rest))
     }
 
     /// The sum of gradients over the smallest squares of a cell, each times its inliers, from what lies behind the cells.
@@ -85,6 +82,13 @@ impl<'w> Cells<'w> {
         (first <= last).then_some([low, high])
     }
 
+    /// What lies around all inliers; `None` without any.
+    pub fn area(&self) -> Option<Area> {
+        let [[x0, y0], [x1, y1]] = self.bounds()?;
+        let pixels = |cells: usize| (cells * self.side) as u32;
+        Some(Area { from: [x0, y0].map(pixels), size: [x1 + 1 - x0, y1 + 1 - y0].map(pixels) })
+    }
+
     /// The parts of the picture, around all cells that hold an inlier; `None` where none does.
     pub fn parts(&self) -> Option<Parts> {
         let [[left, top], [right, bottom]] = self.bounds()?;
@@ -111,29 +115,41 @@ impl<'w> Cells<'w> {
         [(x * self.side) as f64 + half, -((y * self.side) as f64) - half]
     }
 
-    /// The quads of so many by so many cells, of pixels or of the smallest squares, and the mean of their N.
-    pub fn quads(&self, scale: usize, from: [usize; 2], times: usize) -> (Quads, [f64; 3]) {
-        let (all, _) = self.quads.as_chunks::<{ quads::NUMBERS }>();
-        let (mut sums, mut normal, mut count) = (Quads::default(), [0.0; 3], 0.0);
-        let [left, top] = from;
-        for y in top..(top + times).min(self.height) {
-            for x in left..(left + times).min(self.width) {
-                let cell = self.at(x, y);
-                count += cell.count();
-                for (sum, term) in normal.iter_mut().zip(cell.normal) {
-                    *sum += term;
+    /// The sums of two by two cells, the top left one given, about their common corner.
+    pub fn two_by_two(&self, x: usize, y: usize) -> Moments {
+        let half = 0.5 * self.side as f64;
+        let mut sums = Moments::default();
+        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let (right, up) = (if dx == 0 { -half } else { half }, if dy == 0 { half } else { -half });
+            sums.add(&self.at(x + dx, y + dy), right, up);
+        }
+        sums
+    }
+
+    /// Makes cells of twice the side in place; false where there is not even one.
+    pub fn merge(&mut self) -> bool {
+        let (width, height) = (self.width / 2, self.height / 2);
+        if width == 0 || height == 0 {
+            return false;
+        }
+        for y in 0..height {
+            for x in 0..width {
+                // What is overwritten has been read: cell (x, y) comes no later than (2x, 2y).
+                let sums = self.two_by_two(2 * x, 2 * y);
+                let (cells, _) = self.numbers.as_chunks_mut::<NUMBERS>();
+                if let Some(cell) = cells.get_mut(y * width + x) {
+                    sums.store(cell);
                 }
-                let quads = all.get((y * self.width + x) * SCALES + scale).map(Quads::load);
-                sums.add(&quads.unwrap_or_default());
             }
         }
-        (sums, if count > 0.0 { mat3::scale(normal, 1.0 / count) } else { normal })
+        (self.width, self.height, self.side) = (width, height, 2 * self.side);
+        true
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::grid;
+    use super::super::grid::SUMS;
     use super::*;
     use crate::math::mat3;
     use crate::math::rng::Rng;
@@ -150,37 +166,32 @@ mod tests {
         };
         let normals: std::vec::Vec<[f64; 3]> = (0..width * height).map(|_| normal()).collect();
         let holes: std::vec::Vec<u64> = (0..height).map(|_| rng.next_u64() | rng.next_u64()).collect();
-        let mut numbers = std::vec![f32::NAN; grid::len(width, height, cells)];
+        let mut numbers = std::vec![f32::NAN; cells * SUMS];
         let grid = Grid::finest(width, height, numbers.len()).unwrap();
         grid.clear(&mut numbers);
         for y in (0..height / SIDE * SIDE).step_by(SIDE) {
             let bits = [0, 1, 2, 3].map(|row| holes[y + row]);
-            let normal = |row, column| normals[(y + row - 1) * width + column];
-            let [a, b, c, d] = bits;
-            let above = if y > 0 { holes[y - 1] } else { 0 };
-            grid.add([0, y], width, bits, [above, a, b, c, d], normal, &mut numbers);
+            grid.add([0, y], width, bits, |row, column| normals[(y + row) * width + column], &mut numbers);
         }
         (grid, numbers)
     }
 
     #[test]
-    fn large_cells_hold_what_small_ones_do() {
+    fn large_cells_are_merged_small_ones() {
         let (fine, mut fine_numbers) = summed(64, 40, 1000);
-        let (coarse, mut coarse_numbers) = summed(64, 40, 12);
-        let (cells, _) = Cells::of(&fine, &mut fine_numbers).unwrap();
-        let (sums, _) = Cells::of(&coarse, &mut coarse_numbers).unwrap();
+        let (coarse, mut coarse_numbers) = summed(64, 40, 40);
+        assert!(fine.is_fine() && !coarse.is_fine());
+        let (mut cells, _) = Cells::of(&fine, &mut fine_numbers).unwrap();
+        assert!(cells.merge());
+        let (expected, _) = Cells::of(&coarse, &mut coarse_numbers).unwrap();
         assert_eq!((cells.size(), cells.side()), ([8, 5], 8));
-        assert_eq!((sums.size(), sums.side()), ([4, 3], 16));
-        for (x, y) in (0..3).flat_map(|y| (0..4).map(move |x| (x, y))) {
-            for scale in 0..SCALES {
-                let (own, mean) = sums.quads(scale, [x, y], 1);
-                let (parts, mean_of_parts) = cells.quads(scale, [2 * x, 2 * y], 2);
-                assert_eq!(own.count, parts.count);
-                let close = |a: &f64, b: &f64| (a - b).abs() < 1e-3;
-                assert!(own.ends.iter().zip(&parts.ends).all(|(a, b)| close(a, b)));
-                assert!(mean.iter().zip(&mean_of_parts).all(|(a, b)| close(a, b)));
-                let products = own.products.as_flattened().iter().zip(parts.products.as_flattened());
-                products.for_each(|(a, b)| assert!(close(a, b), "{a} {b}"));
+        assert_eq!((expected.size(), expected.side()), ([8, 5], 8));
+        for (x, y) in (0..5).flat_map(|y| (0..8).map(move |x| (x, y))) {
+            assert_eq!(cells.middle(x, y), expected.middle(x, y));
+            let (a, b) = (cells.at(x, y), expected.at(x, y));
+            assert_eq!(a.position, b.position);
+            for (a, b) in a.normal.iter().zip(b.normal).chain(a.along_x.iter().zip(b.along_x)) {
+                assert!((a - b).abs() < 1e-3, "{a} {b}");
             }
         }
     }

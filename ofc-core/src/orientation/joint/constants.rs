@@ -4,23 +4,12 @@
 //! `tests/tests/uncertainty.rs` and on the photographs, for errors near those of the best transformation there is and for
 //! uncertainties that hold, and these tests hold it.
 
-use core::num::NonZero;
+use core::f64::consts::LN_2;
 
 // Cells and windows.
 
 /// Pixels along the side of the smallest squares: the smallest with which a plane leaves most of its pixels for residuals.
 pub(super) const SIDE: usize = 4;
-
-/// Quads are of pixels, which see all detail, and of the smallest squares, which see less noise.
-pub(super) const SCALES: usize = 2;
-
-/// Pixels along the side of what a quad is made of.
-pub(super) const LENGTHS: [usize; SCALES] = [1, SIDE];
-
-/// Cells along the side of a window: windows of 16 pixels, and of 32, which have an eighth of the noise and lose detail that the
-/// smallest squares do not see either. By trial.
-pub(super) const WINDOW_CELLS: [NonZero<usize>; SCALES] =
-    [NonZero::new(2).unwrap(), NonZero::new(4).unwrap()];
 
 /// Of the 16 pixels of a smallest square so many are inliers where it has a gradient: most of it, so that the plane is not that
 /// of one side. By trial.
@@ -30,56 +19,62 @@ pub(super) const SMALLEST_GRADIENT_COUNT: f64 = 10.0;
 /// left. By trial.
 pub(super) const SMALLEST_RESIDUAL_COUNT: f64 = 12.0;
 
-/// A pixel is among inliers if this share of the pixels around it in its row are inliers.
-pub(super) const SMALLEST_AMONG: f64 = 0.6;
-
-/// So many on both sides. By trial.
-pub(super) const AMONG: usize = 4;
-
 /// Cells whose residuals are above this many times the median are creases and edges rather than noise: noise alone comes to that
 /// in fewer than one of 100,000 full squares (13 degrees of freedom and more).
 pub(super) const CREASE: f32 = 4.0;
 
-/// A window counts if this share of its pixels are in quads: half, so that it is not that of one side. By trial.
-pub(super) const SMALLEST_FILL: f64 = 0.5;
+/// Square windows of so many pixels, smallest first: two by two of the smallest squares, and twice as large each time. By
+/// trial.
+pub(super) const WINDOW_SIZES: [usize; 4] = [8, 16, 32, 64];
 
-/// Smallest squares along the side of the smallest cells, of 8 pixels, of which windows of 16 are made. By trial.
-pub(super) const SMALLEST_TIMES: usize = 2;
+/// A window counts if this share of its pixels are inliers: more than half, so that it is not that of one side. By trial.
+pub(super) const SMALLEST_FILL: f64 = 0.6;
 
-/// Cells at most: larger pictures have larger ones.
-pub(super) const MOST_CELLS: usize = 2400;
+/// Fewer windows than this say nothing: three parameters take as many to be found and as many to be doubted.
+pub(super) const SMALLEST_WINDOWS: usize = 6;
 
-/// Cells at least, where there is not room for smaller ones: ten by eight for pictures of 320 by 240, with which a stream and
-/// its memory stay below 48 KiB.
-pub(super) const FEWEST_CELLS: usize = 88;
+/// What a window that overlaps no other counts in a negative log likelihood: half of its square over its variance.
+pub(super) const INDEPENDENT: f64 = 0.5;
+
+/// Shares of the room that windows of 64, 32 and 16 pixels may take, where there is not room for all: one in so many. There are the
+/// more of them the smaller they are.
+pub(super) const SHARES: [usize; 3] = [8, 6, 4];
+
+/// Cells at least, where there is not room for those of four pixels: sixteen by twelve for pictures of that shape, three
+/// along each side of a part.
+pub(super) const FEWEST_CELLS: usize = 192;
 
 // Integrability.
 
-/// Neighbors whose N differs by more than this, squared, lie on both sides of a depth step: half a radian.
-pub(super) const JUMP: f64 = 0.25;
+/// Times that windows are weighed anew. By trial.
+pub(super) const ROUNDS: usize = 5;
 
-/// As how many windows that share no pixel one counts, where each overlaps others by half along both sides.
-pub(super) const INDEPENDENT: f64 = 0.25;
+/// Times that the cost may be computed while rows are polished between two of these rounds: twelve Newton steps.
+pub(super) const ROUND_EVALUATIONS: u32 = 120;
 
-/// The error of the model relative to curvature is at least this: none is ruled out.
-pub(super) const SMALLEST_EPS: f64 = 1e-3;
+/// s^2 above this many times its variance, two deviations, loses weight quickly. By trial; Student's distribution of three degrees
+/// of freedom falls off about as fast.
+pub(super) const CUT: f64 = 4.0;
 
-/// It is at most all.
-pub(super) const LARGEST_EPS: f64 = 1.0;
+/// The median of the square of a normal number of variance 1.
+pub(super) const MEDIAN_OF_ONE: f64 = 0.454_936;
 
-/// Errors of the model relative to curvature that a search begins with.
-pub(super) const FIRST_EPS: [f64; 3] = [0.005, 0.05, 0.3];
+/// The median of the sum of the squares of two normal numbers of variance 1/2: that of an exponential distribution.
+pub(super) const MEDIAN_OF_TWO: f64 = LN_2;
 
-/// Variances of s are at least this: no window is exact.
-pub(super) const SMALLEST_VARIANCE: f64 = 1e-14;
+/// Systematic errors: as if there were so few independent windows where they explain all of s, and more with the cube of the
+/// share that they explain. By trial.
+pub(super) const SYSTEMATIC_WINDOWS: f64 = 0.1;
 
-/// An error of the model of this size turns all windows alike by [`COMMON_TURN`], and others by the square of their ratio. By
-/// trial: on rendered pictures it is 0.001 to 0.007, where integrability is right to a degree or two; on photographs it is 0.027 to
-/// 0.3, where integrability is off by 4-20 degrees on figurines.
-pub(super) const COMMON_EPS: f64 = 0.027;
+/// Systematic errors explain at least this share of s: none is ruled out by an estimate that happens to be zero.
+pub(super) const SMALLEST_SYSTEMATIC_SHARE: f64 = 1e-3;
 
-/// See [`COMMON_EPS`]; radians.
-pub(super) const COMMON_TURN: f64 = 0.16;
+/// The scatter of gradients over the parts of a picture is less than it would be over pictures, because neighbors are alike: by
+/// this factor, by trial.
+pub(super) const GRADIENT_NEIGHBORS: f64 = 2.0;
+
+/// Second derivatives below this share of their trace are rounding of the differences that they are made of.
+pub(super) const SMALLEST_CURVATURE: f64 = 1e-6;
 
 // Outward normals.
 
@@ -115,12 +110,16 @@ pub(super) const ROUND: f64 = 0.1;
 
 // The choice of windows, and the answer.
 
+/// Larger windows are taken for a variance that is smaller by this factor at least: it does not hold what they hide of
+/// curvature. By trial.
+pub(super) const GAIN: f64 = 0.5;
+
+/// Estimates from windows of two sizes agree up to this distance, squared, in standard deviations of three parameters: 83 % of
+/// those that differ by noise alone do. By trial.
+pub(super) const LARGEST_DISTANCE: f64 = 5.0;
+
 /// No rotation is more uncertain than this, in radians squared: a rotation of which nothing is known has pi^2 / 3 along each axis.
 pub(super) const LARGEST_VARIANCE: f64 = 3.0;
-
-/// What one window alone would add to the deviation of the rotation about each axis, in radians; many add as much less. Where
-/// the model holds and windows are few, second derivatives are as uncertain as they are. A degree for 30 windows. By trial.
-pub(super) const WINDOW_TURN: f64 = 0.5;
 
 /// One kind of evidence decided where this share of the information is its own: three times as much as the other's.
 pub(super) const DECIDING_SHARE: f64 = 0.75;
@@ -130,32 +129,11 @@ pub const APART: f64 = 0.2;
 
 // The search.
 
-/// Rotations that every search starts from, spread over all of them.
-pub(super) const STARTS: usize = 60;
-
-/// Windows at most that the search is over; the end is over all of them.
-pub(super) const SAMPLE: usize = 160;
-
-/// Steps of the search from each start, and of its end, at most.
-pub(super) const STEPS: usize = 12;
-
-/// Steps of the candidates that are compared with the best one, at most.
-pub(super) const OTHER_STEPS: usize = 6;
-
-/// A step is at most this long, in radians.
-pub(super) const LONGEST_STEP: f64 = 0.3;
-
-/// A candidate that is less than this far from the best one, in radians, has led to the same: about a degree. By trial.
-pub(super) const SAME: f64 = 0.02;
-
-/// Starts that are followed are so far apart at least, in radians.
-pub(super) const STARTS_APART: f64 = 0.4;
-
-/// Times that the weight of integrability is renewed. By trial.
-pub(super) const ROUNDS: usize = 3;
+/// Rotations that every search starts from: 60, spread over all of them, after two of the caller's own.
+pub(super) const STARTS: usize = 62;
 
 /// Starts that are followed to their minimum. By trial.
-pub(super) const FOLLOWED: usize = 4;
+pub(super) const FOLLOWED: usize = 8;
 
 /// Times that each followed start may compute the cost: 24 Newton steps.
 pub(super) const EVALUATIONS: u32 = 240;

@@ -1,161 +1,195 @@
-//! Integrability: how likely the products of neighbors are those of one surface.
+//! Integrability on windows of one size.
 //!
-//! For a surface `r1.(N x N_x) + r2.(N x N_y) = 0`. The mean s of the left side over a window has the variance
-//! `e = noise(R) + eps^2 b`: what noise adds, and an error of the model that is relative to how much the surface bends there, b. Where C is
-//! bent by near lights or paint, s is wrong by a share of what it is made of; eps, one number a picture, is that share and is estimated
-//! with R. A window's density is Student's with three degrees of freedom: some lie over creases and shadows' borders.
+//! A window says that `s = r1.(N x N_x) + r2.(N x N_y)` is zero but for noise. Its variance is known: N's noise is that of
+//! the smallest cells, and what the median of s^2 is above that is the model's error. The cost is the weighted sum of
+//! squares over what is expected of it, times a factor that makes of it a log likelihood: the scatter of its gradient over
+//! the parts of the picture says how much independent information there is.
+//!
+//! Normals have unit length, so `N.N_x` and `N.N_y` are zero for a surface that obeys the model. Where they are not, by more
+//! than noise, colors change over the picture for other reasons than orientation (lights that are near, interreflection),
+//! in s as much as along N. Such errors do not average out, and the more of s they explain the less it counts.
 
-use super::constants::{INDEPENDENT, LARGEST_EPS, SMALLEST_EPS, SMALLEST_VARIANCE};
-use super::value::Value;
-use super::window::{NUMBERS, Window};
+use super::constants::{
+    CUT, GRADIENT_NEIGHBORS, MEDIAN_OF_ONE, MEDIAN_OF_TWO, PARTS, ROUND_EVALUATIONS, ROUNDS,
+    SMALLEST_CURVATURE, SMALLEST_SYSTEMATIC_SHARE, SMALLEST_WINDOWS, SYSTEMATIC_WINDOWS,
+};
+use super::form::Form;
+use super::information::{inverse, trace};
+use super::outward::Outward;
+use super::record::{Record, Records};
+use super::search::{derivatives, minimum};
 use crate::math::mat3::{self, Mat3};
-use libm::{log, log1p};
+use crate::math::select::{kth_smallest, median_rank};
+use crate::orientation::orthogonal::polish::polish;
 
-/// Windows.
+/// What windows of one size say.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Integrable<'w> {
-    pub windows: &'w [[f32; NUMBERS]],
-    /// Every so many windows count.
-    pub stride: usize,
-    /// The covariance of a pixel's N.
-    pub noise: Mat3,
+pub(super) struct Integrable {
+    squares: Form,
+    noise: Form,
+    model: f64,
+    factor: f64,
+    independent: f64,
 }
 
-/// The negative log likelihood, and its derivatives by log eps^2.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Likelihood {
-    pub value: Value,
-    pub by_eps: f64,
-    pub eps_information: f64,
+impl Integrable {
+    /// What windows say, and the rows that these and `outward` say together, beginning at `rows`; `None` where there are too
+    /// few. `systematic` is the least systematic error that windows have shown so far.
+    pub fn of(
+        records: &mut Records,
+        noise: &Mat3,
+        outward: &Outward,
+        rows: Mat3,
+        systematic: f64,
+    ) -> Option<(Self, Mat3)> {
+        let independent = records.independent * records.numbers.len() as f64;
+        let prior = |rows: &Mat3| outward.cost(rows);
+        let mut form =
+            Self { squares: Form::ZERO, noise: Form::ZERO, model: 0.0, factor: independent, independent };
+        let mut rows = rows;
+        let mut parts = Sums { squares: [Form::ZERO; PARTS * PARTS], noise: [Form::ZERO; PARTS * PARTS] };
+        for round in 0..ROUNDS {
+            let of = |record: &Record| {
+                let s = record.s(&rows);
+                [s * s, record.variance_at(noise, &rows)]
+            };
+            let model = excess(records, of, MEDIAN_OF_ONE)?;
+            parts.weigh(records, noise, &rows, model.model, round > 0);
+            form.squares = sum(&parts.squares);
+            form.noise = sum(&parts.noise);
+            form.model = (form.squares.at(&rows) - form.noise.at(&rows)).max(0.0);
+            let cost = |rows: &Mat3| form.cost(rows) + prior(rows);
+            rows = if round == 0 {
+                minimum([&rows, &mat3::IDENTITY], cost).rows
+            } else {
+                polish(rows, cost(&rows), ROUND_EVALUATIONS, cost).0
+            };
+            form.model = (form.squares.at(&rows) - form.noise.at(&rows)).max(0.0);
+            form.factor = parts.information(&form, &rows, systematic / (model.noise + model.model))?;
+        }
+        Some((form, rows))
+    }
+
+    /// The negative log likelihood of `rows`.
+    pub fn cost(&self, rows: &Mat3) -> f64 {
+        self.factor * self.ratio(rows)
+    }
+
+    fn ratio(&self, rows: &Mat3) -> f64 {
+        let expected = self.noise.at(rows) + self.model;
+        if expected > 0.0 { self.squares.at(rows) / expected } else { 0.0 }
+    }
 }
 
-/// Degrees of freedom of Student's distribution.
-const FREEDOM: f64 = 3.0;
+/// How much of `N.N_x` and `N.N_y`, squared, is not noise; `None` where there are too few windows.
+pub(super) fn systematic_error(records: &mut Records, noise: &Mat3) -> Option<f64> {
+    if records.numbers.len() < SMALLEST_WINDOWS {
+        return None;
+    }
+    let of = |record: &Record| [record.radial, record.radial_noise(noise)];
+    excess(records, of, MEDIAN_OF_TWO).map(|excess| excess.model)
+}
 
-impl Integrable<'_> {
-    /// That of `rows` and eps^2.
+/// What the median of a square is above the median of the variance that noise gives it, and that variance.
+struct Excess {
+    model: f64,
+    noise: f64,
+}
+
+/// `of` gives square and variance of a window; `median` is that of the square for a variance of 1.
+fn excess(records: &mut Records, of: impl Fn(&Record) -> [f64; 2], median: f64) -> Option<Excess> {
+    let n = records.numbers.len();
+    let (squares, variances) = records.scratch.split_at_mut_checked(n)?;
+    let slots = squares.iter_mut().zip(variances.iter_mut());
+    for (record, (square, variance)) in records.numbers.iter().map(Record::load).zip(slots) {
+        let [a, b] = of(&record);
+        (*square, *variance) = (a as f32, b as f32);
+    }
+    let square = f64::from(kth_smallest(squares, median_rank(n))?);
+    let noise = f64::from(kth_smallest(variances.get_mut(..n)?, median_rank(n))?);
+    Some(Excess { model: (square / median - noise).max(0.0), noise })
+}
+
+/// Sums by part of the picture.
+struct Sums {
+    squares: [Form; PARTS * PARTS],
+    noise: [Form; PARTS * PARTS],
+}
+
+fn sum(forms: &[Form]) -> Form {
+    let mut total = Form::ZERO;
+    for form in forms {
+        total.add(form);
+    }
+    total
+}
+
+impl Sums {
+    /// The sums with the weights that windows have at `rows`; `robust` ones where s^2 is too large for its variance.
     #[inline(never)]
-    pub fn likelihood(&self, rows: &Mat3, eps_squared: f64) -> Likelihood {
-        let [r1, r2, r3] = *rows;
-        let mut sum = Likelihood::default();
-        for window in self.windows.iter().step_by(self.stride.max(1)).map(Window::load) {
-            let ([vx, vy], m, [xx, xy, yy]) = (window.products, window.normal, window.variance);
-            let s = mat3::dot(r1, vx) + mat3::dot(r2, vy);
-            let ds = [-mat3::dot(r3, vy), mat3::dot(r3, vx), mat3::dot(r1, vy) - mat3::dot(r2, vx)];
-            // noise = xx a K a + 2 xy a K b + yy b K b with a = r1 x m and b = r2 x m.
-            let of_noise = |row| mat3::apply(&self.noise, mat3::cross(row, m));
-            let ([a0, a1, a2], [b0, b1, b2]) = (of_noise(r1), of_noise(r2));
-            let mixed = |u: f64, v: f64| mat3::cross(m, [u * a0 + v * b0, u * a1 + v * b1, u * a2 + v * b2]);
-            let (p, q) = (mixed(xx, xy), mixed(xy, yy));
-            let noise = (mat3::dot(r1, p) + mat3::dot(r2, q)).max(0.0);
-            let dn = [
-                -2.0 * mat3::dot(r3, q),
-                2.0 * mat3::dot(r3, p),
-                2.0 * (mat3::dot(r1, q) - mat3::dot(r2, p)),
-            ];
-            let model = eps_squared * window.bending;
-            let e = noise + model + SMALLEST_VARIANCE;
-            let t = s * s / (FREEDOM * e);
-            let weight = window.share;
-            let (along, across) =
-                ((FREEDOM + 1.0) / FREEDOM / (e * (1.0 + t)), (0.5 - 2.0 * t / (1.0 + t)) / e);
-            sum.value.cost += weight * (0.5 * log(e) + 0.5 * (FREEDOM + 1.0) * log1p(t));
-            for ((g, ds), dn) in sum.value.gradient.iter_mut().zip(ds).zip(dn) {
-                *g += weight * (along * s * ds + across * dn);
+    fn weigh(&mut self, records: &Records, noise: &Mat3, rows: &Mat3, model: f64, robust: bool) {
+        self.squares.iter_mut().chain(&mut self.noise).for_each(|form| *form = Form::ZERO);
+        for record in records.iter() {
+            let expected = record.variance_at(noise, rows) + model;
+            if expected.is_nan() || expected <= 0.0 {
+                continue;
             }
-            let by_noise = 0.25 / (e * e);
-            for ((row, a), c) in sum.value.information.iter_mut().zip(ds).zip(dn) {
-                for ((entry, b), d) in row.iter_mut().zip(ds).zip(dn) {
-                    *entry += weight * (along * a * b + by_noise * c * d);
+            let mut weight = 1.0 / expected;
+            if robust {
+                let s = record.s(rows);
+                let excess = 1.0 + s * s / (CUT * expected);
+                weight /= excess * excess;
+            }
+            let part = records.parts.of(record.at);
+            if let Some(form) = self.squares.get_mut(part) {
+                form.add_square(&record.v, weight);
+            }
+            if let Some(form) = self.noise.get_mut(part) {
+                form.add_noise(&record.cross_noise(noise), record.variance, weight);
+            }
+        }
+    }
+
+    /// The factor that makes a log likelihood of the ratio of `form` near its minimum `rows`: 3 over the trace of
+    /// H^-1 G, with H its second derivatives and G the scatter of its gradient, but no more than independent windows would
+    /// give, and less where errors are systematic: `share` of s^2 they are.
+    #[inline(never)]
+    fn information(&self, form: &Integrable, rows: &Mat3, share: f64) -> Option<f64> {
+        let expected = form.noise.at(rows) + form.model;
+        if expected.is_nan() || expected <= 0.0 {
+            return None;
+        }
+        let ratio = form.ratio(rows);
+        let (_, hessian) = derivatives(rows, |rows| form.ratio(rows));
+        let (mut used, mut mean, mut scatter) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
+        for (squares, noise) in self.squares.iter().zip(&self.noise) {
+            if *squares == Form::ZERO {
+                continue;
+            }
+            let (gradient, _) =
+                derivatives(rows, |rows| (squares.at(rows) - ratio * noise.at(rows)) / expected);
+            used += 1.0;
+            for ((mean, row), a) in mean.iter_mut().zip(&mut scatter).zip(gradient) {
+                *mean += a;
+                for (entry, b) in row.iter_mut().zip(gradient) {
+                    *entry += a * b;
                 }
             }
-            let f = model / e;
-            sum.by_eps += weight * f * e * across;
-            sum.eps_information += weight * 0.25 * f * f;
         }
-        let each = INDEPENDENT * self.stride.max(1) as f64;
-        let mut value = Value::default();
-        value.add(&sum.value, each);
-        Likelihood { value, by_eps: each * sum.by_eps, eps_information: each * sum.eps_information }
-    }
-
-    /// eps^2 within what is possible.
-    pub fn bounded(eps_squared: f64) -> f64 {
-        eps_squared.clamp(SMALLEST_EPS * SMALLEST_EPS, LARGEST_EPS * LARGEST_EPS)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::rng::Rng;
-    use crate::orientation::orthogonal::polish::rotation;
-    use libm::sqrt;
-
-    /// Windows of a paraboloid in another frame, n = `rows` N, whose s is wrong by about `eps` of their bending.
-    fn windows(rows: &Mat3, eps: f64, count: usize) -> std::vec::Vec<[f32; NUMBERS]> {
-        let mut rng = Rng::new(3);
-        let back = mat3::transpose(rows);
-        let mut one = || {
-            let [p, q] = [(); 2].map(|()| 1.2 * rng.unit() - 0.6);
-            let length = sqrt(1.0 + p * p + q * q);
-            let n = [p / length, q / length, 1.0 / length];
-            let (a, b, c) = (0.02, 0.01 * (rng.unit() - 0.5), 0.03);
-            // What slopes add along n falls away.
-            let product = |slope: [f64; 3]| mat3::scale(mat3::cross(n, slope), 1.0 / length);
-            let ([u, v, w], y) = (product([a, b, 0.0]), product([b, c, 0.0]));
-            let bending = u * u + v * v + w * w + mat3::dot(y, y);
-            let normal: f64 = (0..12).map(|_| rng.unit()).sum::<f64>() - 6.0;
-            let x = [u + eps * sqrt(bending) * normal, v, w];
-            let window = Window {
-                products: [mat3::apply(&back, x), mat3::apply(&back, y)],
-                variance: [1e-3, 1e-4, 2e-3],
-                normal: mat3::apply(&back, n),
-                bending,
-                share: 1.0,
-            };
-            let mut numbers = [0.0; NUMBERS];
-            window.store(&mut numbers);
-            numbers
-        };
-        (0..count).map(|_| one()).collect()
-    }
-
-    const NOISE: Mat3 = [[1e-6, 2e-7, 0.0], [2e-7, 3e-6, 1e-7], [0.0, 1e-7, 2e-6]];
-
-    #[test]
-    fn derivatives_are_those_of_the_cost_and_eps_is_found() {
-        let rows = rotation([0.4, -0.3, 0.9]);
-        let windows = windows(&rows, 0.05, 2000);
-        let integrable = Integrable { windows: &windows, stride: 1, noise: NOISE };
-        let off = mat3::multiply(&rotation([0.02, 0.03, -0.01]), &rows);
-        let there = integrable.likelihood(&off, 0.0025);
-        let by_differences = Value::of(&off, |rows| integrable.likelihood(rows, 0.0025).value.cost);
-        for (a, b) in there.value.gradient.iter().zip(by_differences.gradient) {
-            assert!((a - b).abs() < 1e-2 * b.abs().max(1.0), "{a} {b}");
+        if used < 2.0 {
+            return None;
         }
-        let h = 1e-4;
-        let [more, less] = [1.0 + h, 1.0 - h].map(|by| integrable.likelihood(&off, 0.0025 * by).value.cost);
-        let slope = (more - less) / (2.0 * h);
-        assert!((there.by_eps - slope).abs() < 1e-3 * slope.abs().max(1.0), "{} {slope}", there.by_eps);
-        // A normal distribution of 0.05 is nearest to a Student's that is a little narrower.
-        let cost = |eps: f64| integrable.likelihood(&rows, eps * eps).value.cost;
-        assert!(cost(0.04) < cost(0.02) && cost(0.04) < cost(0.08));
-        // It is cheapest in its own frame, and its twin costs the same.
-        let own = cost(0.05);
-        let [r1, r2, r3] = rows;
-        let twin = [mat3::scale(r1, -1.0), mat3::scale(r2, -1.0), r3];
-        assert!((integrable.likelihood(&twin, 0.0025).value.cost - own).abs() < 1e-9 * own.abs());
-        assert!(there.value.cost > own + 10.0, "{} {own}", there.value.cost);
-    }
-
-    #[test]
-    fn every_fourth_window_says_about_as_much() {
-        let rows = rotation([0.1, 0.2, 0.3]);
-        let windows = windows(&rows, 0.05, 2000);
-        let all = Integrable { windows: &windows, stride: 1, noise: NOISE };
-        let some = Integrable { stride: 4, ..all };
-        let [a, b] = [all, some].map(|windows| windows.likelihood(&rows, 0.0025).value.information[2][2]);
-        assert!((b / a - 1.0).abs() < 0.1, "{a} {b}");
+        for (row, a) in scatter.iter_mut().zip(mean) {
+            for (entry, b) in row.iter_mut().zip(mean) {
+                *entry = (*entry - a * b / used) * used / (used - 1.0);
+            }
+        }
+        let least = SMALLEST_CURVATURE * trace(&hessian).abs().max(f64::MIN_POSITIVE);
+        let white = 1.0 / form.independent;
+        let random = GRADIENT_NEIGHBORS * trace(&mat3::multiply(&inverse(&hessian, least), &scatter)) / 3.0;
+        let share = share.max(SMALLEST_SYSTEMATIC_SHARE);
+        let systematic = 2.0 * share * share * share / SYSTEMATIC_WINDOWS;
+        let total = random.max(white) + systematic;
+        (total > 0.0).then(|| 1.0 / total)
     }
 }

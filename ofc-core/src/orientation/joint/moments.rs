@@ -23,6 +23,8 @@ pub(super) struct Plane {
     pub middle: [f64; 3],
     /// `N_x` and `N_y`.
     pub gradient: [[f64; 3]; 2],
+    /// The variances of `N_x` and `N_y` and their covariance (xx, xy, yy), as multiples of that of a pixel.
+    pub variance: [f64; 3],
 }
 
 impl Moments {
@@ -108,7 +110,7 @@ impl Moments {
         for value in &mut middle {
             *value /= n;
         }
-        Some(Plane { middle, gradient })
+        Some(Plane { middle, gradient, variance: [a, b, c] })
     }
 }
 
@@ -145,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_is_found() {
+    fn a_plane_is_found_with_the_variance_of_its_slopes() {
         let mut rng = Rng::new(5);
         let (middle, along_x, along_y) = ([0.3, -0.2, 0.9], [0.05, -0.01, 0.02], [-0.03, 0.04, 0.01]);
         let mut sums = Moments::default();
@@ -156,13 +158,20 @@ mod tests {
             mean = [mean[0] + x / 12.0, mean[1] + y / 12.0];
         }
         let plane = sums.plane().unwrap();
-        let [x, y] = mean;
+        let ([x, y], [mut xx, mut xy, mut yy]) = (mean, [0.0; 3]);
+        for [px, py] in places {
+            (xx, xy, yy) = (xx + (px - x) * (px - x), xy + (px - x) * (py - y), yy + (py - y) * (py - y));
+        }
         for i in 0..3 {
             assert!((plane.gradient[0][i] - along_x[i]).abs() < 1e-12);
             assert!((plane.gradient[1][i] - along_y[i]).abs() < 1e-12);
             let there = middle[i] + x * along_x[i] + y * along_y[i];
             assert!((plane.middle[i] - there).abs() < 1e-12);
         }
+        // The inverse of the scatter of the places.
+        let [a, b, c] = plane.variance;
+        assert!((a * xx + b * xy - 1.0).abs() < 1e-12 && (a * xy + b * yy).abs() < 1e-12);
+        assert!((b * xx + c * xy).abs() < 1e-12 && (b * xy + c * yy - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -211,7 +211,7 @@ fn sum_but(parts: &[[[f64; 3]; 2]], left_out: usize) -> [[f64; 3]; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::grid::{self, Grid};
+    use super::super::grid::{Grid, SUMS};
     use super::*;
     use crate::orientation::orthogonal::polish::rotation;
 
@@ -223,13 +223,11 @@ mod tests {
             let (n1, n2) = ((x as f64 - 31.5) / 60.0, (31.5 - y as f64) / 60.0);
             mat3::apply(&back, [n1, n2, sqrt(1.0 - n1 * n1 - n2 * n2)])
         };
-        let mut numbers = std::vec![f32::NAN; grid::len(SIZE, SIZE, 256)];
+        let mut numbers = std::vec![f32::NAN; 256 * SUMS];
         let grid = Grid::finest(SIZE, SIZE, numbers.len()).unwrap();
         grid.clear(&mut numbers);
         for y in (0..SIZE).step_by(4) {
-            let used = [if y > 0 { u64::MAX } else { 0 }, u64::MAX, u64::MAX, u64::MAX, u64::MAX];
-            let normal = |row, column| normal(column, y + row - 1);
-            grid.add([0, y], SIZE, [u64::MAX; 4], used, normal, &mut numbers);
+            grid.add([0, y], SIZE, [u64::MAX; 4], |row, column| normal(column, y + row), &mut numbers);
         }
         let (cells, rest) = Cells::of(&grid, &mut numbers).unwrap();
         Outward::of(&cells, rest, [31.5, -31.5]).unwrap()

@@ -1,49 +1,25 @@
 //! From the rows of a picture to the orientation, in one pass or in two.
 
+use super::area::Area;
 use super::cells::Cells;
-use super::constants::{FEWEST_CELLS, SIDE};
-use super::estimate::estimate;
+use super::constants::{FEWEST_CELLS, SIDE, WINDOW_SIZES};
 use super::grid::{self, Grid};
-use super::integrable::Integrable;
 use super::outward::Outward;
+use super::record::{self, Record, Records};
 use super::result::Joint;
-use super::used::used;
-use super::windows;
+use super::scales::Estimate;
+use super::windows::Windows;
 use crate::color::inliers::Inliers;
 use crate::math::mat3::{self, Mat3};
-use crate::picture::Window;
+use crate::picture::Image;
 
 /// Rows that are summed at a time.
 pub(crate) const STRIP: usize = SIDE;
 
-/// Which pixels of the rows of a strip are summed.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Strip {
-    inliers: [u64; STRIP],
-    /// Those that quads are made of, the row above first.
-    used: [u64; STRIP + 1],
-}
-
-impl Strip {
-    /// Looks at a window of a row, the one above the strip first, and says in which of its pixels the surface is seen.
-    pub fn see(&mut self, row: usize, window: &Window, inliers: &Inliers) -> u64 {
-        let exposed = inliers.usable.exposed(window);
-        let bits = inliers.bits_among(window, exposed);
-        if let Some(slot) = self.used.get_mut(row) {
-            *slot = used(inliers, window, exposed, bits);
-        }
-        if let Some(slot) = row.checked_sub(1).and_then(|row| self.inliers.get_mut(row)) {
-            *slot = bits;
-        }
-        exposed
-    }
-}
-
 /// How many `f32` rows are summed into, at least, where they are too many for cells of four pixels.
 pub(crate) const fn least_room(width: usize, height: usize) -> usize {
-    let squares = (width / SIDE).saturating_mul(height / SIDE);
-    let cells = if squares < FEWEST_CELLS { squares } else { FEWEST_CELLS };
-    cells * grid::SUMS + grid::rows_len(width)
+    let count = grid::count(width, height);
+    grid::SUMS * if count < FEWEST_CELLS { count } else { FEWEST_CELLS }
 }
 
 /// Sums over the rows of a picture, four by four: all that its orientation is found from where there is room for cells of
@@ -68,32 +44,118 @@ impl CellSums {
         self.whole.add(x, y, exposed);
     }
 
-    /// Adds `len` columns of four rows, at the given pixel whose row is a multiple of four: which pixels, and `color` of row, that above the
-    /// strip first, and column.
+    /// Adds `len` columns of four rows, at the given pixel whose row is a multiple of four: their inliers, and `color` of row
+    /// and column.
     #[inline]
     pub fn add(
         &self,
         at: [usize; 2],
         len: usize,
-        strip: &Strip,
+        inliers: [u64; STRIP],
         root: &Mat3,
         color: impl Fn(usize, usize) -> [f32; 3],
         numbers: &mut [f32],
     ) {
         let normal = |row, column| mat3::apply(root, color(row, column).map(f64::from));
-        self.grid.add(at, len, strip.inliers, strip.used, normal, numbers);
+        self.grid.add(at, len, inliers, normal, numbers);
     }
 
-    /// The transformation, from the sums in these numbers; `None` where there are too few inliers.
-    #[inline(never)]
-    pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
+    /// The cells, what lies behind them, what they say of outward normals, and the noise.
+    fn evidence<'w>(&self, numbers: &'w mut [f32]) -> Option<(Cells<'w>, &'w mut [f32], Outward, Mat3)> {
         let (cells, rest) = Cells::of(&self.grid, numbers)?;
         let outward = Outward::of(&cells, rest, self.whole.position())?;
         let noise = cells.noise(rest)?;
-        let (pixels, rest) = windows::collect(&cells, 0, &noise, rest);
-        let (squares, _) = windows::collect(&cells, 1, &noise, rest);
-        Some(estimate(&outward, [pixels, squares].map(|windows| Integrable { windows, stride: 1, noise })))
+        Some((cells, rest, outward, noise))
     }
+
+    /// The transformation, from the sums in the first of these numbers; `None` where there are too few inliers, or was not room
+    /// enough.
+    #[inline(never)]
+    pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
+        if !self.grid.is_fine() || numbers.len() < self.grid.len() {
+            return None;
+        }
+        let (mut cells, rest, outward, noise) = self.evidence(numbers)?;
+        let mut estimate = Estimate::new(&outward, &noise);
+        for _ in WINDOW_SIZES {
+            let goes_on = collect(&cells, rest).is_none_or(|records| estimate.admit(records));
+            if !goes_on || !cells.merge() {
+                break;
+            }
+        }
+        Some(estimate.end())
+    }
+
+    /// What cells of any size say; windows of the area that they lie in are to be summed next.
+    #[inline(never)]
+    pub fn window_sums(&self, numbers: &mut [f32]) -> Option<WindowSums> {
+        let (cells, _, outward, noise) = self.evidence(numbers)?;
+        Some(WindowSums { outward, noise, area: cells.area()? })
+    }
+}
+
+/// What is known before windows are summed, where there is not room for all of them.
+#[derive(Clone, Debug)]
+pub(crate) struct WindowSums {
+    outward: Outward,
+    noise: Mat3,
+    area: Area,
+}
+
+impl WindowSums {
+    /// Before the first row.
+    pub fn begin(&self, numbers: &mut [f32]) {
+        self.windows(numbers).clear(numbers);
+    }
+
+    /// Adds the inliers of row `y`.
+    pub fn add(&self, y: usize, row: &Image, inliers: &Inliers, root: &Mat3, numbers: &mut [f32]) {
+        let windows = self.windows(numbers);
+        row.for_each_window(|window| windows.add(y, window, inliers.bits(window), root, numbers));
+    }
+
+    fn windows(&self, numbers: &[f32]) -> Windows {
+        Windows::new(&self.area, numbers.len())
+    }
+
+    /// The transformation, from the windows that were summed; `None` where there was not room enough.
+    #[inline(never)]
+    pub fn end(&self, numbers: &mut [f32]) -> Option<Joint> {
+        let windows = self.windows(numbers);
+        let parts = self.area.parts();
+        let mut estimate = Estimate::new(&self.outward, &self.noise);
+        for spread in windows.spreads() {
+            let (own, scratch) = windows.split(spread, numbers)?;
+            let n = spread.replace(own, |sums, at| Record::of(sums, spread.size as f64, at));
+            let (numbers, scratch) = (own.as_chunks().0.get(..n)?, scratch.get_mut(..2 * n)?);
+            if !estimate.admit(Records { numbers, scratch, parts, independent: spread.independent() }) {
+                break;
+            }
+        }
+        Some(estimate.end())
+    }
+}
+
+/// The windows of two by two cells; `None` without any.
+fn collect<'r>(cells: &Cells, numbers: &'r mut [f32]) -> Option<Records<'r>> {
+    let [width, height] = cells.size();
+    let (numbers, scratch) = numbers.split_at_mut_checked(width * height * record::NUMBERS)?;
+    let (numbers, _) = numbers.as_chunks_mut();
+    let (parts, side) = (cells.parts()?, 2.0 * cells.side() as f64);
+    let mut n = 0;
+    for y in 0..height.saturating_sub(1) {
+        for x in 0..width.saturating_sub(1) {
+            if let Some(record) = Record::of(&cells.two_by_two(x, y), side, cells.middle(x, y))
+                && let Some(slot) = numbers.get_mut(n)
+            {
+                record.store(slot);
+                n += 1;
+            }
+        }
+    }
+    // One begins half a side after the other.
+    let independent = record::independent(0.5);
+    Some(Records { numbers: numbers.get(..n)?, scratch: scratch.get_mut(..2 * n)?, parts, independent })
 }
 
 /// The mean position of pixels.

@@ -1,6 +1,21 @@
-//! The parts that a picture is cut into.
+//! Where the surface lies in the picture, and the parts that it is cut into.
 
 use super::constants::PARTS;
+
+/// A rectangle around all inliers, in pixels from the top left corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Area {
+    pub from: [u32; 2],
+    pub size: [u32; 2],
+}
+
+impl Area {
+    /// Its parts, for positions with x right and y up from the top left pixel.
+    pub fn parts(&self) -> Parts {
+        let ([x, y], [width, height]) = (self.from.map(f64::from), self.size.map(f64::from));
+        Parts { from: [x, 1.0 - y - height], size: [width, height] }
+    }
+}
 
 /// The parts of a picture: where the inliers lie, cut into [`PARTS`] by [`PARTS`]. Positions are in pixels, x right and y up.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +49,7 @@ mod tests {
 
     #[test]
     fn parts_are_counted_from_the_lower_left() {
-        let parts = Parts { from: [10.0, -119.0], size: [50.0, 100.0] };
+        let parts = Area { from: [10, 20], size: [50, 100] }.parts();
         assert_eq!(parts.middle(), [35.0, -69.0]);
         // The top left pixel, its right neighbors up to the border, and the bottom right pixel.
         assert_eq!(parts.of([10.0, -20.0]), 20);
