@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# All tests, and how long each kind of them took. run.sh --fast leaves out Python, the documentation, the emulated
+# All tests, and how long each kind of them took. run.sh --fast leaves out instruction counts, Python, the documentation, the emulated
 # boards, the other targets, the fuzzing, the examples and the newcomers. Installs the Debian packages it lacks (.ci/packages.sh names them) as root or with sudo. Can be run again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -25,7 +25,7 @@ step() {
 }
 
 step "scripts"
-shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/determinism/*.sh tests/fuzz/run.sh tests/newcomer/run.sh ofc-ffi/package/*.sh bindings/*/*.sh docs/*.sh
+shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/benches/*.sh tests/determinism/*.sh tests/fuzz/run.sh tests/newcomer/run.sh ofc-ffi/package/*.sh bindings/*/*.sh docs/*.sh
 
 step "format and lints"
 cargo fmt --all --check
@@ -46,9 +46,12 @@ ctest --test-dir target/ctest --output-on-failure
 
 if [ -n "$fast" ]; then
     step
-    echo "the fast tests passed in $SECONDS s; Python, documentation, firmware, other targets, fuzzing, examples and newcomers were left out"
+    echo "the fast tests passed in $SECONDS s; instruction counts, Python, documentation, firmware, other targets, fuzzing, examples and newcomers were left out"
     exit
 fi
+
+step "instruction counts"
+./tests/benches/counts.sh
 
 step "Python and the documentation"
 if reaches_pypi; then
