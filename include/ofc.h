@@ -41,7 +41,10 @@
 ///   or not finite. On a negative status no output has been touched. That memory is as long as said cannot be checked:
 ///   a stream is told from the first 32 bytes at its address, which must be there; anything else in them is no stream.
 /// - Stack: below 12 KiB on x86-64 in a call that says nothing else. What is said of stack is for all arguments.
-/// - Threads: there is no global state. Calls on different outputs and workspaces may run at the same time.
+/// - Threads: there is no global state. Calls on different outputs and workspaces may run at the same time. The library starts no
+///   threads; calls that end in _parallel take what runs parts of them, an ofc_parallel. Whatever makes numbers of single pixels, as
+///   normals, uncertainties, weights and inliers, can also be split by rows without it: a call for each part of the rows, of a picture
+///   that begins with the part's first row in `pixels`, planes and mask, writes the bits that one call for all rows writes.
 /// - Same bits: one version makes the same output bits of the same input and seed, on every target with IEEE 754
 ///   arithmetic.
 /// - NaN: pixels that are NaN or infinite are left out and counted. Parameters that are not finite are refused. With
@@ -155,6 +158,53 @@ ofc_status ofc_solve(const ofc_image *image, const ofc_solve_params *params, voi
 /// Reference: eq. 8.
 ofc_status ofc_normals_compute(const ofc_image *image, const ofc_solution *solution, float *normals,
                                size_t normals_stride_bytes);
+
+/* ---- Threads of the caller -------------------------------------------------------------------------------------- */
+
+/// One part of the work of a call, for ofc_parallel to run: it is called with the `work` that came with it.
+typedef void (*ofc_part)(void *work, int32_t index);
+
+/// How a call may run parts of its work at the same time, on threads of the caller. How work is cut depends on its size alone, so the
+/// bits of the results do not depend on how many parts run at once, nor on their order.
+///
+/// With OpenMP, and much the same with cv::parallel_for_(), dispatch_apply() or a pool of threads:
+///
+///     static void run(void *context, ofc_part part, void *work, int32_t count)
+///     {
+///         #pragma omp parallel for schedule(dynamic)
+///         for (int32_t i = 0; i < count; i++)
+///             part(work, i);
+///     }
+///     const ofc_parallel openmp = {.run = run};
+///
+/// A call may have work for `run` several times. On processors without atomic instructions it runs all parts itself.
+typedef struct ofc_parallel {
+    /// Calls `part(work, i)` for every i from 0 to count - 1, in any order and on any threads, and returns when all of these have
+    /// returned; `count` is at most 32. What is called twice is done once, an index out of range does nothing, and what is left
+    /// out the library does when `run` has returned. No exception may leave it.
+    void (*run)(void *context, ofc_part part, void *work, int32_t count);
+    void *context; ///< The first argument of `run`. The library does not look at it, and it may be NULL.
+} ofc_parallel;
+
+/// Does what ofc_normals_compute() does, with the same bits, on threads of the caller.
+/// @param image  The picture.
+/// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
+/// @param normals  Output: as that of ofc_normals_compute().
+/// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @param parallel  What runs the parts; NULL for the thread of the call.
+/// @return As ofc_normals_compute(); OFC_STATUS_NULL_POINTER also where `run` is NULL.
+ofc_status ofc_normals_compute_parallel(const ofc_image *image, const ofc_solution *solution, float *normals,
+                                        size_t normals_stride_bytes, const ofc_parallel *parallel);
+
+/// Does what ofc_normals_uncertainty() does, with the same bits, on threads of the caller.
+/// @param image  The picture.
+/// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
+/// @param angle_rad  Output: as that of ofc_normals_uncertainty().
+/// @param angle_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @param parallel  What runs the parts; NULL for the thread of the call.
+/// @return As ofc_normals_uncertainty(); OFC_STATUS_NULL_POINTER also where `run` is NULL.
+ofc_status ofc_normals_uncertainty_parallel(const ofc_image *image, const ofc_solution *solution, float *angle_rad,
+                                            size_t angle_stride_bytes, const ofc_parallel *parallel);
 
 /* ---- Depth: part 2 has the parameters and the result ------------------------------------------------------------ */
 

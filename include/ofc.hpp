@@ -16,10 +16,14 @@
 
 #include <ofc.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
+#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -224,6 +228,43 @@ inline ofc_image planes(const void *red, const void *green, const void *blue, st
     return image;
 }
 
+// ---- Threads ----------------------------------------------------------------------------------------------------------
+
+/// Runs parts of a call on so many threads, that of the call among them, which are started for each batch of parts. A program that
+/// has a pool of threads gives parts to that: ofc::opencv::parallel() does with OpenCV's.
+class Threads {
+  public:
+    /// Of all processors of the machine, or of so many threads.
+    explicit Threads(unsigned count = std::thread::hardware_concurrency()) : count_(std::clamp(count, 1U, 32U)) {}
+
+    /// For calls that take an ofc_parallel, valid for as long as this object is.
+    ofc_parallel parallel() const { return {run, const_cast<unsigned *>(&count_)}; }
+
+  private:
+    static void run(void *context, ofc_part part, void *work, std::int32_t count) noexcept
+    {
+        std::atomic<std::int32_t> next{0};
+        const auto take = [&] {
+            for (std::int32_t i = next++; i < count; i = next++)
+                part(work, i);
+        };
+        std::array<std::thread, 32> threads;
+        const unsigned wanted = std::min(*static_cast<const unsigned *>(context), static_cast<unsigned>(count));
+        try {
+            for (unsigned i = 1; i < wanted; i++)
+                threads[i] = std::thread(take);
+        } catch (...) {
+            // There are no more threads: those that have started do all.
+        }
+        take();
+        for (std::thread &thread : threads)
+            if (thread.joinable())
+                thread.join();
+    }
+
+    unsigned count_;
+};
+
 // ---- From a picture to normals --------------------------------------------------------------------------------------
 
 /// ofc_solve(). Where there is a view of inliers, it has rows without gaps, and becomes 255 for an inlier and 0
@@ -253,11 +294,12 @@ inline ofc_solution solve(const ofc_image &image)
     return solve(image, defaults<ofc_solve_params>(), workspace);
 }
 
-/// ofc_normals_compute() into memory of the caller.
-inline void normals(const ofc_image &image, const ofc_solution &solution, View<float, 3> out)
+/// ofc_normals_compute() into memory of the caller, on threads where there are some.
+inline void normals(const ofc_image &image, const ofc_solution &solution, View<float, 3> out,
+                    const ofc_parallel *parallel = nullptr)
 {
     detail::ensure_size(out, image.width, image.height);
-    ensure_ok(ofc_normals_compute(&image, &solution, out.data, out.stride_bytes));
+    ensure_ok(ofc_normals_compute_parallel(&image, &solution, out.data, out.stride_bytes, parallel));
 }
 
 /// ofc_normals_compute().
@@ -268,11 +310,13 @@ inline Array<float, 3> normals(const ofc_image &image, const ofc_solution &solut
     return out;
 }
 
-/// ofc_normals_uncertainty() into memory of the caller.
-inline void uncertainty(const ofc_image &image, const ofc_solution &solution, View<float> angle_rad)
+/// ofc_normals_uncertainty() into memory of the caller, on threads where there are some.
+inline void uncertainty(const ofc_image &image, const ofc_solution &solution, View<float> angle_rad,
+                        const ofc_parallel *parallel = nullptr)
 {
     detail::ensure_size(angle_rad, image.width, image.height);
-    ensure_ok(ofc_normals_uncertainty(&image, &solution, angle_rad.data, angle_rad.stride_bytes));
+    const std::size_t stride = angle_rad.stride_bytes;
+    ensure_ok(ofc_normals_uncertainty_parallel(&image, &solution, angle_rad.data, stride, parallel));
 }
 
 /// ofc_normals_uncertainty().
@@ -465,6 +509,18 @@ inline ofc_image planes(const cv::Mat &red, const cv::Mat &green, const cv::Mat 
             throw Error(OFC_STATUS_INVALID_PARAMETER);
     return ofc::planes(red.data, green.data, blue.data, red.cols, red.rows, red.empty() ? 0 : red.step[0],
                        detail::samples(red) + OFC_PIXEL_PLANES8 - OFC_PIXEL_RGB8, view<const std::uint8_t>(mask));
+}
+
+/// Runs parts of a call by cv::parallel_for_(), such as `const ofc_parallel parallel = ofc::opencv::parallel();`.
+inline ofc_parallel parallel()
+{
+    const auto run = [](void *, ofc_part part, void *work, std::int32_t count) {
+        cv::parallel_for_(cv::Range(0, count), [=](const cv::Range &range) {
+            for (int i = range.start; i < range.end; i++)
+                part(work, i);
+        });
+    };
+    return {run, nullptr};
 }
 
 /// The normals as CV_32FC3 in the order x, y, z; zero where there is none.

@@ -53,7 +53,7 @@ pub use offset::*;
 pub use orientation::*;
 pub use orthogonal::*;
 pub use paint::*;
-pub use pointers::OFC_WORKSPACE_ALIGNMENT;
+pub use pointers::{OFC_WORKSPACE_ALIGNMENT, ofc_parallel, ofc_part};
 pub use reason::*;
 pub use regression::*;
 pub use relief::*;

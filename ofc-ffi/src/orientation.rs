@@ -1,6 +1,7 @@
 //! From tilts and slants to F and the normals.
 
 use crate::prelude::*;
+use core::ptr;
 use ofc_core::color::inliers::Inliers;
 use ofc_core::math::mat3::{Mat3, max_abs};
 use ofc_core::orientation::integrability;
@@ -127,7 +128,8 @@ pub unsafe extern "C" fn ofc_normals_from_matrix(
         let matrix = bounded(Mat3::from_c(call.input_array(f_inverse)?)?)?;
         let length = Length::from_c(normalization)?;
         let (normals, stride) = call.output_rows(normals, size(&picture), 3, normals_stride_bytes)?;
-        normals::compute(&picture, test.selector(), &matrix, length, normals, stride)?;
+        let one = &Threads::one();
+        normals::compute_in_parts(&picture, test.selector(), &matrix, length, normals, stride, one)?;
         Ok(OFC_STATUS_OK)
     })
 }
@@ -150,13 +152,45 @@ pub unsafe extern "C" fn ofc_normals_compute(
     normals_stride_bytes: usize,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    unsafe { Contract::kept() }.call(|call| {
-        let picture = call.image(image)?;
-        let solution = call.input(solution)?;
-        let orientation = solved(&solution)?;
-        let test = Inliers::from_c(solution.inlier_test)?;
-        let (normals, stride) = call.output_rows(normals, size(&picture), 3, normals_stride_bytes)?;
-        normals::compute(&picture, test.selector(), &orientation.f_inverse, Length::Unit, normals, stride)?;
-        Ok(OFC_STATUS_OK)
-    })
+    unsafe { Contract::kept() }
+        .call(|call| compute_normals(call, image, solution, normals, normals_stride_bytes, ptr::null()))
+}
+
+/// Does what ofc_normals_compute() does, with the same bits, on threads of the caller.
+/// @param image  The picture.
+/// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
+/// @param normals  Output: as that of ofc_normals_compute().
+/// @param normals_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @param parallel  What runs the parts; NULL for the thread of the call.
+/// @return As ofc_normals_compute(); OFC_STATUS_NULL_POINTER also where `run` is NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_normals_compute_parallel(
+    image: *const ofc_image,
+    solution: *const ofc_solution,
+    normals: *mut f32,
+    normals_stride_bytes: usize,
+    parallel: *const ofc_parallel,
+) -> ofc_status {
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }
+        .call(|call| compute_normals(call, image, solution, normals, normals_stride_bytes, parallel))
+}
+
+fn compute_normals(
+    call: &mut Call,
+    image: *const ofc_image,
+    solution: *const ofc_solution,
+    normals: *mut f32,
+    normals_stride_bytes: usize,
+    parallel: *const ofc_parallel,
+) -> Result<ofc_status, Refusal> {
+    let picture = call.image(image)?;
+    let solution = call.input(solution)?;
+    let orientation = solved(&solution)?;
+    let test = Inliers::from_c(solution.inlier_test)?;
+    let threads = call.threads(parallel)?;
+    let (normals, stride) = call.output_rows(normals, size(&picture), 3, normals_stride_bytes)?;
+    let (inliers, matrix) = (test.selector(), &orientation.f_inverse);
+    normals::compute_in_parts(&picture, inliers, matrix, Length::Unit, normals, stride, &threads)?;
+    Ok(OFC_STATUS_OK)
 }

@@ -13,7 +13,9 @@ use core::ffi::{c_char, c_void};
 use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 use core::slice;
+use core::sync::atomic::AtomicU32;
 use ofc_core::math::arena::{Arena, Need};
+use ofc_core::math::parallel::{MOST_PARTS, Parallel};
 
 /// The alignment in bytes that every workspace must have; memory from malloc() has it.
 pub const OFC_WORKSPACE_ALIGNMENT: usize = 8;
@@ -282,4 +284,139 @@ fn address(address: usize, alignment: usize) -> Result<usize, Refusal> {
     ensure(address != 0, OFC_STATUS_NULL_POINTER)?;
     ensure(address.is_multiple_of(alignment), OFC_STATUS_MISALIGNED)?;
     Ok(address)
+}
+
+/// One part of the work of a call, for ofc_parallel to run: it is called with the `work` that came with it.
+pub type ofc_part = unsafe extern "C" fn(work: *mut c_void, index: i32);
+
+/// How a call may run parts of its work at the same time, on threads of the caller. How work is cut depends on its size alone, so the
+/// bits of the results do not depend on how many parts run at once, nor on their order.
+///
+/// With OpenMP, and much the same with cv::parallel_for_(), dispatch_apply() or a pool of threads:
+///
+///     static void run(void *context, ofc_part part, void *work, int32_t count)
+///     {
+///         #pragma omp parallel for schedule(dynamic)
+///         for (int32_t i = 0; i < count; i++)
+///             part(work, i);
+///     }
+///     const ofc_parallel openmp = {.run = run};
+///
+/// A call may have work for `run` several times. On processors without atomic instructions it runs all parts itself.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ofc_parallel {
+    /// Calls `part(work, i)` for every i from 0 to count - 1, in any order and on any threads, and returns when all of these have
+    /// returned; `count` is at most 32. What is called twice is done once, an index out of range does nothing, and what is left
+    /// out the library does when `run` has returned. No exception may leave it.
+    pub run:
+        Option<unsafe extern "C" fn(context: *mut c_void, part: ofc_part, work: *mut c_void, count: i32)>,
+    /// The first argument of `run`. The library does not look at it, and it may be NULL.
+    pub context: *mut c_void,
+}
+
+// SAFETY: raw pointers, and one to a function, of which the contract says that it is one or NULL.
+unsafe impl Plain for ofc_parallel {}
+
+/// What runs the parts of a call: the caller's threads, or nobody else.
+#[derive(Clone, Copy)]
+pub struct Threads(Option<ofc_parallel>);
+
+impl Threads {
+    /// The thread of the call.
+    pub const fn one() -> Self {
+        Self(None)
+    }
+}
+
+impl Call<'_> {
+    /// The caller's threads, or the one of the call where the pointer is NULL.
+    pub fn threads(&mut self, pointer: *const ofc_parallel) -> Result<Threads, Refusal> {
+        let parallel = unless_null(pointer, || self.input(pointer))?;
+        ensure(parallel.is_none_or(|parallel| parallel.run.is_some()), OFC_STATUS_NULL_POINTER)?;
+        Ok(Threads(parallel))
+    }
+}
+
+/// Items to work on, each of which is given out once.
+struct Work<'a, T, F> {
+    items: *mut T,
+    count: usize,
+    part: &'a F,
+    /// A bit for each item that has been given out.
+    claimed: AtomicU32,
+}
+
+impl<T: Send, F: Fn(usize, &mut T) + Sync> Work<'_, T, F> {
+    /// Does part `index`, unless it is none or has been given out.
+    fn run(&self, index: usize) {
+        if index < self.count && is_first(&self.claimed, 1 << index) {
+            // SAFETY: one of the `count` items, which nobody else gets: its bit has been set here.
+            (self.part)(index, unsafe { &mut *self.items.add(index) });
+        }
+    }
+}
+
+/// Whether a bit had not been set yet, which it is now.
+#[cfg(target_has_atomic = "32")]
+fn is_first(bits: &AtomicU32, bit: u32) -> bool {
+    bits.fetch_or(bit, core::sync::atomic::Ordering::Relaxed) & bit == 0
+}
+
+/// Never: nobody else runs parts.
+#[cfg(not(target_has_atomic = "32"))]
+fn is_first(_: &AtomicU32, _: u32) -> bool {
+    false
+}
+
+/// What the caller's function is given as a part.
+///
+/// # Safety
+/// `work` is a [`Work`] of these types, as long as `run` of [`ofc_parallel`] has not returned.
+unsafe extern "C" fn part_of_work<T: Send, F: Fn(usize, &mut T) + Sync>(work: *mut c_void, index: i32) {
+    // SAFETY: the caller's promise. `T` may be sent and `F` shared, so this may be another thread.
+    let work = unsafe { &*work.cast::<Work<T, F>>() };
+    if let Ok(index) = usize::try_from(index) {
+        work.run(index);
+    }
+}
+
+/// The one place where a function of the caller is called.
+///
+/// # Safety
+/// `work` is what `part` takes, and stays so until this returns.
+#[inline(never)]
+unsafe fn call_the_callers_function(
+    parallel: &ofc_parallel,
+    part: ofc_part,
+    work: *mut c_void,
+    count: usize,
+) {
+    if let (Some(run), Ok(count)) = (parallel.run, i32::try_from(count)) {
+        // SAFETY: by the contract a function of this type, which calls `part` with `work` and only before it returns.
+        unsafe { run(parallel.context, part, work, count) }
+    }
+}
+
+impl Parallel for Threads {
+    fn for_each<T: Send, F: Fn(usize, &mut T) + Sync>(&self, items: &mut [T], part: F) {
+        let mut done = 0;
+        if let Some(parallel) = &self.0
+            && cfg!(target_has_atomic = "32")
+            && (2..=MOST_PARTS).contains(&items.len())
+        {
+            let claimed = AtomicU32::new(0);
+            let mut work = Work { items: items.as_mut_ptr(), count: items.len(), part: &part, claimed };
+            let pointer = (&raw mut work).cast();
+            // SAFETY: a `Work` of these types, which lives on when the caller's function has returned.
+            unsafe { call_the_callers_function(parallel, part_of_work::<T, F>, pointer, work.count) };
+            done = work.claimed.into_inner();
+        }
+        for (i, item) in items.iter_mut().enumerate() {
+            // With more items than bits none is done.
+            if u32::try_from(i).ok().and_then(|i| done.checked_shr(i)).unwrap_or(0) & 1 == 0 {
+                part(i, item);
+            }
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! How sure C, F and the normals are, and where the matte model does not hold.
 
 use crate::prelude::*;
+use core::ptr;
 use ofc_core::color::inliers::Inliers;
 use ofc_core::color::regression::whole;
 use ofc_core::math::mat3::Mat3;
@@ -103,15 +104,47 @@ pub unsafe extern "C" fn ofc_normals_uncertainty(
     angle_stride_bytes: usize,
 ) -> ofc_status {
     // SAFETY: the contract of this function.
-    unsafe { Contract::kept() }.call(|call| {
-        let picture = call.image(image)?;
-        let solution = call.input(solution)?;
-        let sources = sources(&solution)?;
-        let inliers = Inliers::from_c(solution.inlier_test)?;
-        let (angles, stride) = call.output_rows(angle_rad, size(&picture), 1, angle_stride_bytes)?;
-        Uncertainty::new(&sources).compute(&picture, inliers.selector(), angles, stride)?;
-        Ok(OFC_STATUS_OK)
-    })
+    unsafe { Contract::kept() }
+        .call(|call| compute_angles(call, image, solution, angle_rad, angle_stride_bytes, ptr::null()))
+}
+
+/// Does what ofc_normals_uncertainty() does, with the same bits, on threads of the caller.
+/// @param image  The picture.
+/// @param solution  What ofc_solve() wrote with OFC_STATUS_OK.
+/// @param angle_rad  Output: as that of ofc_normals_uncertainty().
+/// @param angle_stride_bytes  Bytes from one row to the next, a multiple of 4; nothing between rows is written.
+/// @param parallel  What runs the parts; NULL for the thread of the call.
+/// @return As ofc_normals_uncertainty(); OFC_STATUS_NULL_POINTER also where `run` is NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ofc_normals_uncertainty_parallel(
+    image: *const ofc_image,
+    solution: *const ofc_solution,
+    angle_rad: *mut f32,
+    angle_stride_bytes: usize,
+    parallel: *const ofc_parallel,
+) -> ofc_status {
+    // SAFETY: the contract of this function.
+    unsafe { Contract::kept() }
+        .call(|call| compute_angles(call, image, solution, angle_rad, angle_stride_bytes, parallel))
+}
+
+fn compute_angles(
+    call: &mut Call,
+    image: *const ofc_image,
+    solution: *const ofc_solution,
+    angle_rad: *mut f32,
+    angle_stride_bytes: usize,
+    parallel: *const ofc_parallel,
+) -> Result<ofc_status, Refusal> {
+    let picture = call.image(image)?;
+    let solution = call.input(solution)?;
+    let sources = sources(&solution)?;
+    let inliers = Inliers::from_c(solution.inlier_test)?;
+    let threads = call.threads(parallel)?;
+    let (angles, stride) = call.output_rows(angle_rad, size(&picture), 1, angle_stride_bytes)?;
+    let inliers = inliers.selector();
+    Uncertainty::new(&sources).compute_in_parts(&picture, inliers, angles, stride, &threads)?;
+    Ok(OFC_STATUS_OK)
 }
 
 /// The matte weight of each normal that ofc_normals_compute() makes, by Wolff's model of smooth dielectrics (plastic, glaze, paint, a

@@ -64,6 +64,31 @@ void solves_as_c_does(const ofc_image &photo)
     EXPECT(result.converged == 1 && result.pixel_count > 5000);
 }
 
+void any_number_of_threads_gives_the_same_bits(const ofc_image &photo)
+{
+    // Balls one below the other, so that there is work for more than one thread.
+    constexpr std::int32_t balls = 9, tall = balls * height;
+    std::vector<std::uint8_t> pixels;
+    for (int i = 0; i < balls; i++) {
+        const auto *const first = static_cast<const std::uint8_t *>(photo.pixels);
+        pixels.insert(pixels.end(), first, first + 3 * pixel_count);
+    }
+    const ofc_image all = ofc::image(pixels.data(), width, tall, 3 * width, OFC_PIXEL_RGB8);
+    const ofc_solution solution = ofc::solve(photo);
+    const ofc::Array<float, 3> normals = ofc::normals(all, solution);
+    const ofc::Array<float> angles = ofc::uncertainty(all, solution);
+    for (const unsigned count : {0U, 1U, 2U, 16U, 1000U}) {
+        const ofc::Threads threads(count);
+        const ofc_parallel parallel = threads.parallel();
+        ofc::Array<float, 3> found(width, tall);
+        ofc::Array<float> found_angles(width, tall);
+        ofc::normals(all, solution, found.view(), &parallel);
+        ofc::uncertainty(all, solution, found_angles.view(), &parallel);
+        EXPECT(std::memcmp(found.data(), normals.data(), found.size() * sizeof(float)) == 0);
+        EXPECT(std::memcmp(found_angles.data(), angles.data(), angles.size() * sizeof(float)) == 0);
+    }
+}
+
 void throws_what_c_returns(const ofc_image &photo)
 {
     ofc::Workspace workspace;
@@ -155,6 +180,7 @@ int main()
     const std::vector<std::uint8_t> pixels = ball();
     const ofc_image photo = ofc::image(pixels.data(), width, height, 3 * width, OFC_PIXEL_RGB8);
     solves_as_c_does(photo);
+    any_number_of_threads_gives_the_same_bits(photo);
     throws_what_c_returns(photo);
     streams_as_c_does(photo);
     return failures == 0 ? 0 : 1;

@@ -60,6 +60,13 @@ int main()
     EXPECT(straight[0] > 250 && std::abs(straight[1] - 127) < 4 && std::abs(straight[2] - 127) < 4);
     EXPECT(ofc::opencv::normal_map(cv::Mat(2, 2, CV_32FC3, cv::Scalar::all(0))).at<cv::Vec3b>(1, 1) == cv::Vec3b());
 
+    // OpenCV's threads find the same, in a picture with work for several.
+    const cv::Mat balls = cv::repeat(bgr, 9, 1);
+    const ofc_parallel parallel = ofc::opencv::parallel();
+    cv::Mat in_parts(balls.rows, balls.cols, CV_32FC3);
+    ofc::normals(ofc::opencv::image(balls), expected, ofc::opencv::view<float, 3>(in_parts), &parallel);
+    EXPECT(std::memcmp(in_parts.data, cv::repeat(found, 9, 1).data, 9 * normals.size() * sizeof(float)) == 0);
+
     // The left half is masked out, by a mask that is a region itself.
     cv::Mat mask = framed(cv::Mat(height, width, CV_8U, cv::Scalar(1)));
     mask.colRange(0, width / 2) = 0;

@@ -34,6 +34,30 @@ void mix_methods(const ofc_image *image, const struct fitted *fitted)
     }
 }
 
+static void run_backwards(void *context, ofc_part part, void *work, int32_t count)
+{
+    (void)context;
+    for (int32_t i = count - 1; i >= 0; i--)
+        part(work, i);
+}
+
+/* Calls in parts write what calls as a whole have written; where they do not, the digest changes. */
+static void mix_parts(const ofc_image *image, const ofc_solution *solution, ofc_status known)
+{
+    static float again[PIXELS * 3];
+    const ofc_parallel parallel = {.run = run_backwards};
+    int alike = ofc_normals_compute_parallel(image, solution, again, WIDTH * 3 * sizeof(float), &parallel) == OFC_STATUS_OK;
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < 3 * image->width; x++)
+            alike &= again[3 * WIDTH * y + x] == normals[3 * WIDTH * y + x];
+    alike &= ofc_normals_uncertainty_parallel(image, solution, again, WIDTH * sizeof(float), &parallel) == known;
+    for (int y = 0; known == OFC_STATUS_OK && y < image->height; y++)
+        for (int x = 0; x < image->width; x++)
+            alike &= again[WIDTH * y + x] == angles[WIDTH * y + x];
+    if (!alike)
+        mix_text("other bits");
+}
+
 static void solve(const ofc_image *image, const ofc_solve_params *params)
 {
     ofc_solution solution = {0};
@@ -52,6 +76,7 @@ static void solve(const ofc_image *image, const ofc_solve_params *params)
     const ofc_status known = ofc_normals_uncertainty(image, &solution, angles, WIDTH * sizeof(float));
     mix_status(known);
     mix_floats(angles, known == OFC_STATUS_OK ? image->height * image->width : 0);
+    mix_parts(image, &solution, known);
     mix_status(ofc_normals_matte_weight(image, &solution, 1.5, angles, WIDTH * sizeof(float)));
     mix_floats(angles, image->height * image->width);
     mix_status(ofc_check(image, &solution, NULL, workspace, workspace_bytes, &result));

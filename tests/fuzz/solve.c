@@ -20,6 +20,21 @@ static ofc_solve_params *any_params(void)
     return params;
 }
 
+/* Some parts, some of them twice, and some that are none. */
+static void run_some(void *context, ofc_part part, void *work, int32_t count)
+{
+    (void)context;
+    for (int i = below(8); i > 0; i--)
+        part(work, below(16) ? (int32_t)(word32() % (uint32_t)count) : (int32_t)word32());
+}
+
+static const ofc_parallel *any_parallel(void)
+{
+    ofc_parallel *const parallel = TAKE(ofc_parallel, 1);
+    *parallel = (ofc_parallel){.run = run_some};
+    return parallel;
+}
+
 static void check_counts(const struct picture *picture, const ofc_pixel_counts *counts)
 {
     const int64_t all =
@@ -37,7 +52,11 @@ static void use(const struct picture *picture, const ofc_solution *solution)
 #define IMAGE (picture->bad ? (must_be_refused(), picture->image) : BAD(picture->image, NULL))
     if (CALL(ofc_normals_compute(IMAGE, BAD(solution, NULL), BAD(normals, NULL), triple), normals) == 0)
         unit_normals("normals", normals, triple, width, height);
+    const ofc_parallel *const parallel = any_parallel();
+    if (CALL(ofc_normals_compute_parallel(IMAGE, BAD(solution, NULL), BAD(normals, NULL), triple, parallel), normals) == 0)
+        unit_normals("normals in parts", normals, triple, width, height);
     float *const angle = take_rows(row, stride, height, sizeof(float));
+    CALL(ofc_normals_uncertainty_parallel(IMAGE, BAD(solution, NULL), BAD(angle, NULL), stride, parallel), angle);
     if (CALL(ofc_normals_uncertainty(IMAGE, BAD(solution, NULL), BAD(angle, NULL), stride), angle) == 0)
         for (int32_t y = 0; y < height; y++)
             for (int32_t x = 0; x < width; x++) {

@@ -41,7 +41,11 @@ impl Entry {
             return rest.get(..word(rest));
         }
         let before = match first.strip_prefix("typedef ") {
-            Some(rest) => rest.strip_suffix(';')?,
+            // Of a pointer to a function the name is in the middle.
+            Some(rest) => match rest.split_once("(*") {
+                Some((_, name)) => name.split_once(')')?.0,
+                None => rest.strip_suffix(';')?,
+            },
             None => first.split_once('(')?.0,
         };
         before.rsplit([' ', '*']).next()

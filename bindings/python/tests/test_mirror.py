@@ -21,7 +21,10 @@ SOURCES = "".join(path.read_text(encoding="utf-8") for path in Path(ofc.__file__
 # Not wrapped, and why.
 A_STAGE = "a stage of ofc_solve(), whose Solution has what it finds"
 ROWS = "for microcontrollers; RigModel.normals() takes whole frames"
+PARTS = "other threads run during a call: split the rows, or the pictures"
 LEFT_OUT = {
+    "ofc_normals_compute_parallel": PARTS,
+    "ofc_normals_uncertainty_parallel": PARTS,
     "ofc_version": "ofc_version_string() is __version__",
     "ofc_segment_mark": "labels == label is the same mask",
     "ofc_lmeds_params_default": "part of ofc_solve_params_default()",

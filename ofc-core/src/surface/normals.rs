@@ -6,6 +6,7 @@
 use super::rows;
 use super::unit_normals::UnitNormals;
 use crate::math::mat3::{self, Mat3};
+use crate::math::parallel::{Parallel, Serial};
 use crate::picture::{Image, Window};
 use libm::sqrt;
 
@@ -32,11 +33,30 @@ pub enum Length {
 /// [`TooShort`], also when a row stride is smaller than a row.
 pub fn compute(
     image: &Image,
-    inliers: impl Fn(&Window) -> u64,
+    inliers: impl Fn(&Window) -> u64 + Sync,
     f_inverse: &Mat3,
     length: Length,
     normals: &mut [f32],
     row_stride: usize,
+) -> Result<(), TooShort> {
+    compute_in_parts(image, inliers, f_inverse, length, normals, row_stride, &Serial)
+}
+
+/// What [`compute`] writes, by whatever runs parts.
+///
+/// # Shape
+/// As [`compute`].
+///
+/// # Errors
+/// As [`compute`].
+pub fn compute_in_parts(
+    image: &Image,
+    inliers: impl Fn(&Window) -> u64 + Sync,
+    f_inverse: &Mat3,
+    length: Length,
+    normals: &mut [f32],
+    row_stride: usize,
+    parallel: &impl Parallel,
 ) -> Result<(), TooShort> {
     let single = UnitNormals::new(f_inverse);
     let value = |color| normal(f_inverse, color, length).map(|component| component as f32);
@@ -47,7 +67,7 @@ pub fn compute(
             bits
         }
     };
-    rows::write_windows(image, inliers, many, value, normals, row_stride)
+    rows::write_in_parts(image, inliers, many, value, normals, row_stride, parallel)
 }
 
 /// What [`compute`] writes of unit length, but in double precision and a pixel after the other: less code, and as fast where there are

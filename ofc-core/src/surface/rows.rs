@@ -1,5 +1,6 @@
 //! Numbers of every inlier, written into the caller's rows.
 
+use crate::math::parallel::{Parallel, for_each_chunk, rows_of_part};
 use crate::picture::{self, Image, Window, for_each_bit};
 use core::fmt;
 
@@ -58,4 +59,54 @@ pub(super) fn write_windows<const N: usize>(
         });
     });
     written.map_err(|_| TooShort)
+}
+
+/// Parts with fewer pixels than this are not worth a thread's waking up.
+const PIXELS_OF_PART: usize = 1 << 12;
+
+/// [`write_windows`], some rows at a time. No number depends on which those are.
+///
+/// # Errors
+/// [`TooShort`]; nothing is written then.
+pub(super) fn write_in_parts<const N: usize>(
+    image: &Image,
+    inliers: impl Fn(&Window) -> u64 + Sync,
+    many: impl Fn(&Window, u64, &mut [[f32; N]]) -> u64 + Sync,
+    value: impl Fn([f32; 3]) -> [f32; N] + Sync,
+    out: &mut [f32],
+    row_stride: usize,
+    parallel: &impl Parallel,
+) -> Result<(), TooShort> {
+    let (width, height) = (image.width(), image.height());
+    let need = picture::span(width, height, N, row_stride).map_err(|_| TooShort)?;
+    let out = out.get_mut(..need).ok_or(TooShort)?;
+    let rows = rows_of_part(height, PIXELS_OF_PART.div_ceil(width.max(1)));
+    for_each_chunk(parallel, out, rows.saturating_mul(row_stride), |part, out| {
+        let y = part * rows;
+        if let Some(image) = image.crop([0, y], [width, rows.min(height - y)]) {
+            // Long enough: it has been cut so.
+            let _ = write_windows(&image, &inliers, &many, &value, out, row_stride);
+        }
+    });
+    Ok(())
+}
+
+/// [`write_in_parts`] of the numbers that [`write`] writes.
+///
+/// # Errors
+/// [`TooShort`]; nothing is written then.
+pub(super) fn write_each_in_parts<const N: usize>(
+    image: &Image,
+    inliers: impl Fn(&Window) -> u64 + Sync,
+    value: impl Fn([f32; 3]) -> [f32; N] + Sync,
+    nothing: f32,
+    out: &mut [f32],
+    row_stride: usize,
+    parallel: &impl Parallel,
+) -> Result<(), TooShort> {
+    let none = |_: &Window, bits, out: &mut [[f32; N]]| {
+        out.fill([nothing; N]);
+        bits
+    };
+    write_in_parts(image, inliers, none, value, out, row_stride, parallel)
 }

@@ -27,6 +27,7 @@ pub use propagate::{Covariance9, of_f, of_f_inverse, of_turn};
 use super::rows::{self, TooShort};
 use crate::color::regression::Triangle;
 use crate::math::mat3::{self, Mat3};
+use crate::math::parallel::{Parallel, Serial};
 use crate::picture::{Image, Window};
 use core::f64::consts::PI;
 use libm::sqrt;
@@ -129,10 +130,29 @@ impl Uncertainty {
     pub fn compute(
         &self,
         image: &Image,
-        inliers: impl Fn(&Window) -> u64,
+        inliers: impl Fn(&Window) -> u64 + Sync,
         angles: &mut [f32],
         row_stride: usize,
     ) -> Result<(), TooShort> {
-        rows::write(image, inliers, |color| [self.angle(color) as f32], PI as f32, angles, row_stride)
+        self.compute_in_parts(image, inliers, angles, row_stride, &Serial)
+    }
+
+    /// What [`Self::compute`] writes, by whatever runs parts.
+    ///
+    /// # Shape
+    /// As [`Self::compute`].
+    ///
+    /// # Errors
+    /// As [`Self::compute`].
+    pub fn compute_in_parts(
+        &self,
+        image: &Image,
+        inliers: impl Fn(&Window) -> u64 + Sync,
+        angles: &mut [f32],
+        row_stride: usize,
+        parallel: &impl Parallel,
+    ) -> Result<(), TooShort> {
+        let angle = |color| [self.angle(color) as f32];
+        rows::write_each_in_parts(image, inliers, angle, PI as f32, angles, row_stride, parallel)
     }
 }
