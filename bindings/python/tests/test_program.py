@@ -9,10 +9,13 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import numpy.typing as npt
+import pytest
 from PIL import ExifTags, Image, ImageCms
 
 import orientation_from_color as ofc
-from orientation_from_color.files import read_mask, read_picture
+from orientation_from_color import __main__ as program
+from orientation_from_color.files import Results, read_mask, read_picture
 
 
 def run(*arguments: object) -> subprocess.CompletedProcess[str]:
@@ -75,11 +78,17 @@ def test_files_are_read_as_they_were_meant(scene: ofc.Rendering, tmp_path: Path)
         assert done.returncode == 0, done.stderr
         assert ("doubt" in done.stdout) == bool(words)
         assert words in done.stdout
-    for wrong in "gamma", "gamma:0", "gamma:nan", "rec709":
-        assert run(photo, "--out", out, "--transfer", wrong).returncode == 2
+    for wrong in "gamma", "gamma:2x", "gamma:0", "gamma:nan", "rec709":
+        done = run(photo, "--out", out, "--transfer", wrong)
+        assert done.returncode == 2
+        assert "is not linear, srgb, file or gamma:G" in done.stderr
     mask = tmp_path / "mask.png"
     cv2.imwrite(str(mask), inside.astype(np.uint16))
     assert (read_mask(str(mask)) == inside).all()
+    jpeg = tmp_path / "mask.jpg"
+    for said in {"icc_profile": profile}, {"exif": exif_of_srgb()}, {}:
+        Image.fromarray(np.where(inside, 255, 20).astype(np.uint8)).convert("RGB").save(jpeg, quality=98, **said)
+        assert np.count_nonzero(read_mask(str(jpeg)) != inside) < 20, said
     for suffix in "png", "jpg":
         whole, cut = tmp_path / f"whole.{suffix}", tmp_path / f"cut.{suffix}"
         Image.fromarray(upright).save(whole)
@@ -90,6 +99,105 @@ def test_files_are_read_as_they_were_meant(scene: ofc.Rendering, tmp_path: Path)
         assert not out.exists() or not list(out.iterdir())
 
 
+def exif_of_srgb() -> Image.Exif:
+    exif = Image.Exif()
+    exif.get_ifd(ExifTags.IFD.Exif)[ExifTags.Base.ColorSpace] = 1
+    return exif
+
+
+def test_a_mask_as_the_picture_is_stored_is_turned_with_it(scene: ofc.Rendering, tmp_path: Path) -> None:
+    inside = scene.normals[..., 2] > 0
+    inside[:, :40] = False
+    stored = np.rot90(np.asarray(scene.pixels, np.uint8))
+    exif = Image.Exif()
+    exif[ExifTags.Base.Orientation] = 6
+    photo, mask = tmp_path / "photo.png", tmp_path / "mask.png"
+    Image.fromarray(np.ascontiguousarray(stored)).save(photo, exif=exif)
+    picture = read_picture(str(photo))
+    assert picture.pixels.shape[:2] == inside.shape
+    for drawn in inside, np.rot90(inside):
+        cv2.imwrite(str(mask), np.ascontiguousarray(drawn, np.uint8))
+        assert (read_mask(str(mask), picture) == inside).all()
+
+
+def test_a_large_picture_says_what_a_small_one_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    exif = exif_of_srgb()
+    exif[ExifTags.Base.Orientation] = 6
+    photo = tmp_path / "photo.png"
+    Image.fromarray(np.full((30, 40, 3), 90, np.uint8)).save(photo, exif=exif)
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 1000)
+    large = read_picture(str(photo))
+    assert large.pixels.shape[:2] == (40, 30)
+    assert large.says == "sRGB"
+    assert Image.MAX_IMAGE_PIXELS == 1000
+
+
+def test_clipped_pixels_are_left_out_where_a_curve_is_undone(
+    scene: ofc.Rendering, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    photo, below = tmp_path / "photo.png", tmp_path / "below.png"
+    bright = np.clip(2.5 * scene.pixels[..., ::-1], 0, 255)
+    clipped = (np.rint(bright) >= 255).any(axis=-1)
+    assert clipped.any()
+    cv2.imwrite(str(photo), np.rint(bright).astype(np.uint8))
+    plane = np.full(bright.shape, 200, np.uint8)
+    plane[:5, :5] = 255
+    cv2.imwrite(str(below), plane)
+    divided: list[npt.NDArray[np.float32]] = []
+    saturations: list[float] = []
+
+    def solve(pixels: npt.NDArray[np.float32], *_: object, **__: object) -> None:
+        divided.append(pixels)
+        raise ofc.Refused(ofc.Status.DARK)
+
+    def solve_relief(*_: object, params: ofc.ReliefParams, **__: object) -> None:
+        saturations.append(params.saturation)
+        raise ofc.Refused(ofc.Status.NO_RELIEF)
+
+    monkeypatch.setattr(program, "solve", solve)
+    monkeypatch.setattr(program, "solve_relief", solve_relief)
+    for transfer in "srgb", "gamma:2.2":
+        options = program._parser().parse_args([str(photo), "--transfer", transfer, "--background", str(below)])
+        with pytest.raises(ofc.Refused):
+            program._solve(options)
+        left_out = np.asarray(np.isnan(divided[-1]).any(axis=-1))
+        assert left_out[clipped].all()
+        assert left_out[:5, :5].all()
+        assert not left_out[~clipped & (plane[..., 0] < 255)].any()
+        assert saturations[-1] == 255
+
+
+def test_it_is_said_that_the_whole_surface_is_left_out(scene: ofc.Rendering, tmp_path: Path) -> None:
+    photo, out = tmp_path / "photo.png", tmp_path / "out"
+    # Three paints that hardly differ: the lit pixels are not those of one ellipsoid.
+    paint = np.random.default_rng(1).choice([0.95, 1, 1.05], (*scene.pixels.shape[:2], 1), p=[0.2, 0.6, 0.2])
+    cv2.imwrite(str(photo), np.clip(np.rint(scene.pixels[..., ::-1] * paint), 0, 255).astype(np.uint8))
+    done = run(photo, "--out", out, "--model", "ellipsoid")
+    assert done.returncode == 0, done.stderr
+    assert "the whole surface is left out: the lit pixels do not have the colors of the solution" in done.stdout
+    assert "left out" in json.loads((out / "report.json").read_text())["surface"]
+    done = run(photo, "--out", out, "--model", "ellipsoid", "--lit-only")
+    assert "whole surface" not in done.stdout
+
+
+def test_what_a_failed_run_read_is_not_forgotten(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "inliers.png").write_bytes(b"of an earlier run")
+    (out / "depth.tiff").write_bytes(b"of an earlier run")
+    names = ["inliers.png", "depth.tiff", "", ".", "..", "../photo.png"]
+    (out / "report.json").write_text(json.dumps({"program": "ofc", "files": names}))
+    (tmp_path / "photo.png").write_bytes(b"no result")
+    with pytest.raises(OSError, match="no such picture"), Results(out, ["depth.tiff"], [str(out / "inliers.png")]):
+        raise OSError("no such picture")
+    assert sorted(path.name for path in out.iterdir()) == ["inliers.png", "report.json"]
+    assert json.loads((out / "report.json").read_text())["files"] == ["inliers.png"]
+    assert (tmp_path / "photo.png").exists()
+    with Results(out, ["inliers.png"], []) as results:
+        results.finish({})
+    assert [path.name for path in out.iterdir()] == ["report.json"]
+
+
 def test_files_of_others_stay(scene: ofc.Rendering, tmp_path: Path) -> None:
     photo, out = tmp_path / "photo.png", tmp_path / "out"
     cv2.imwrite(str(photo), np.ascontiguousarray(scene.pixels[..., ::-1], np.uint8))
@@ -97,7 +205,7 @@ def test_files_of_others_stay(scene: ofc.Rendering, tmp_path: Path) -> None:
     own = out / "depth.tiff"
     own.write_bytes(b"my own")
     done = run(photo, "--out", out)
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert "depth.tiff is there" in done.stderr
     assert own.read_bytes() == b"my own"
     assert list(out.iterdir()) == [own]
@@ -122,9 +230,17 @@ def test_what_cannot_be_written_is_an_error(scene: ofc.Rendering, tmp_path: Path
     (full / "depth.tiff").symlink_to("/dev/full")
     in_the_way = tmp_path / "way"
     (in_the_way / "normals.png").mkdir(parents=True)
-    for out in (full, in_the_way, photo):
-        done = run(photo, "--out", out)
-        assert done.returncode == 1, out
-        assert "wrote" not in done.stdout
-        assert "Traceback" not in done.stderr
+    no_file_may_be_longer = 'ulimit -f 1; exec "$@"'
+    limited = ["sh", "-c", no_file_may_be_longer, "sh", sys.executable, "-m", "orientation_from_color", str(photo)]
+    disk_full = subprocess.run(
+        [*limited, "--out", str(tmp_path / "disk")], capture_output=True, text=True, timeout=120, check=False
+    )
+    assert not (tmp_path / "disk").exists()
+    # What is in the way is the caller's to move.
+    done = {1: [disk_full], 2: [run(photo, "--out", out) for out in (full, in_the_way, photo)]}
+    for status, runs in done.items():
+        for one in runs:
+            assert one.returncode == status, one.stderr
+            assert "wrote" not in one.stdout
+            assert "Traceback" not in one.stderr
     assert "Traceback" not in run(photo, "--out", tmp_path / "out", "--pixel-pitch", "nan").stderr

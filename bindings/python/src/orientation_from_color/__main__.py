@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import io
 import math
 import sys
@@ -13,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import __version__, integrate, linearize, normal_map, solve, solve_relief
-from .enums import Convexity, DepthMethod, Transfer
+from .enums import Convexity, DepthMethod, Status, Transfer
 from .errors import Error, Refused
 from .flat import flat_field
 from .params import DepthParams, LmedsParams, ReliefParams, SolveParams, SurfaceParams
@@ -78,7 +79,10 @@ def _parser() -> argparse.ArgumentParser:
 def _transfer(text: str) -> tuple[str, float]:
     """What --transfer says: linear, srgb, file or gamma, with its number."""
     kind, _, number = text.partition(":")
-    gamma = float(number) if kind == "gamma" else 0.0
+    try:
+        gamma = float(number) if kind == "gamma" else 0.0
+    except ValueError:
+        gamma = math.nan
     if (
         kind not in ("linear", "srgb", "file", "gamma")
         or (number and kind != "gamma")
@@ -88,8 +92,31 @@ def _transfer(text: str) -> tuple[str, float]:
     return kind, gamma
 
 
-def _as_light(picture: FilePicture, options: argparse.Namespace) -> tuple[npt.NDArray[Any], bool, str | None]:
-    """The picture's light, whether red is first in it, and what is to be doubted of it."""
+@dataclasses.dataclass(frozen=True)
+class _Light:
+    """The light of a picture.
+
+    Attributes:
+        pixels: As they are in the file, or floats where a curve was undone.
+        order: What is first in them.
+        full: The full scale of what was undone; zero where the type of the pixels tells it.
+        doubt: What is to be doubted of them.
+    """
+
+    pixels: npt.NDArray[Any]
+    order: Channels
+    full: float
+    doubt: str | None
+
+    def without_clipped(self) -> npt.NDArray[Any]:
+        """The pixels, NaN where one of the channels is at full scale."""
+        if not self.full:
+            return self.pixels
+        return np.where((self.pixels >= self.full).any(axis=-1, keepdims=True), np.float32(np.nan), self.pixels)
+
+
+def _as_light(picture: FilePicture, options: argparse.Namespace) -> _Light:
+    """The picture's light, as --transfer says."""
     kind, gamma = options.transfer or ("linear", 0.0)
     if kind == "file":
         known = {"linear": "linear", "sRGB": "srgb"}.get(picture.says)
@@ -102,24 +129,23 @@ def _as_light(picture: FilePicture, options: argparse.Namespace) -> tuple[npt.ND
             f"{picture.source} says that it holds {picture.says}, and it was taken for linear: --transfer srgb undoes sRGB, "
             "--transfer linear rules it out"
         )
-    if kind == "srgb":
-        return linearize(picture.pixels, Transfer.SRGB, channels="bgr"), True, doubt
-    if kind == "gamma":
-        return linearize(picture.pixels, Transfer.GAMMA, gamma=gamma, channels="bgr"), True, doubt
-    return picture.pixels, False, doubt
+    if kind == "linear":
+        return _Light(picture.pixels, "bgr", 0.0, doubt)
+    # Linear light of 8 or 16 bits in floats keeps its full scale.
+    full = float(np.iinfo(picture.pixels.dtype).max) if picture.pixels.dtype.kind == "u" else 0.0
+    curve = Transfer.SRGB if kind == "srgb" else Transfer.GAMMA
+    return _Light(linearize(picture.pixels, curve, gamma=gamma, channels="bgr"), "rgb", full, doubt)
 
 
 def _solve(options: argparse.Namespace) -> tuple[Solution | Relief, list[tuple[str, str]]]:
     """What was found, and what is to be said of the file first."""
     file = read_picture(options.image)
-    photo, is_rgb, doubt = _as_light(file, options)
-    order: Channels = "rgb" if is_rgb else "bgr"
-    said = [("picture", file.words)] + ([("doubt", doubt)] if doubt else [])
-    mask = read_mask(options.mask) if options.mask else file.mask
-    below = _as_light(read_picture(options.background), options)[0] if options.background else None
+    light = _as_light(file, options)
+    photo, order, full = light.pixels, light.order, light.full
+    said = [("picture", file.words)] + ([("doubt", light.doubt)] if light.doubt else [])
+    mask = read_mask(options.mask, file) if options.mask else file.mask
+    below = _as_light(read_picture(options.background), options) if options.background else None
     convexity = Convexity.HOLLOW if options.hollow else Convexity.CONVEX if options.convex else Convexity.AUTO
-    # Linear light of 8 or 16 bits in floats keeps its full scale.
-    full = float(np.iinfo(file.pixels.dtype).max) if is_rgb and file.pixels.dtype.kind == "u" else 0.0
     refusal = None
     if options.model != "relief":
         params = SolveParams(lmeds=LmedsParams(seed=options.seed, saturation=full), convexity=convexity)
@@ -127,15 +153,17 @@ def _solve(options: argparse.Namespace) -> tuple[Solution | Relief, list[tuple[s
             if below is None:
                 return solve(photo, mask, channels=order, params=params), said
             params = SolveParams(lmeds=LmedsParams(seed=options.seed), convexity=convexity)
-            return solve(flat_field(photo, below, channels=order).pixels, mask, params=params), said
+            divided = flat_field(light.without_clipped(), below.without_clipped(), channels=order)
+            return solve(divided.pixels, mask, params=params), said
         except Refused as error:
             if options.model == "ellipsoid":
                 raise
             refusal = error
     raised = Convexity.HOLLOW if options.hollow else Convexity.AUTO
-    params_of_relief = ReliefParams(seed=options.seed, ball_radius=options.ball_radius, convexity=raised)
+    params_of_relief = ReliefParams(saturation=full, seed=options.seed, ball_radius=options.ball_radius, convexity=raised)
+    plane = None if below is None else below.pixels
     try:
-        return solve_relief(photo, below, mask, channels=order, params=params_of_relief), said
+        return solve_relief(photo, plane, mask, channels=order, params=params_of_relief), said
     except ValueError:
         if refusal is None:
             raise
@@ -161,7 +189,7 @@ def main() -> int:
         return 2
     except OSError as error:
         print(f"{options.out}: {error}", file=sys.stderr)
-        return 1
+        return 2 if isinstance(error, FileExistsError) else 1  # a file of the caller's is in the way
     except ValueError as error:
         print(f"{options.image}: {error}", file=sys.stderr)
         return 2
@@ -172,8 +200,8 @@ class _UnusableError(Exception):
     """A file that was given cannot be used."""
 
 
-def _whole(found: Solution | Relief, options: argparse.Namespace) -> Surface | None:
-    """The whole surface, where that is wanted and it is known how sure the orientation is."""
+def _whole(found: Solution | Relief, options: argparse.Namespace) -> Surface | Error | None:
+    """The whole surface, or why there is none; None where it is not wanted."""
     if not isinstance(found, Solution) or options.lit_only or options.integrate != "poisson" or found.picture is None:
         return None
     picture = found.picture
@@ -186,14 +214,14 @@ def _whole(found: Solution | Relief, options: argparse.Namespace) -> Surface | N
     order: Channels = "bgr" if picture.channels.startswith("BGR") else "rgb"
     try:
         return found.complete(pixels, mask, channels=order, params=SurfaceParams(pixel_pitch=options.pixel_pitch))
-    except Error:
-        return None
+    except Error as error:
+        return error
 
 
 def _report(found: Solution | Relief, said: list[tuple[str, str]], options: argparse.Namespace, results: Results) -> None:
     """Says and writes what was found."""
     surface = _whole(found, options)
-    if surface is not None:
+    if isinstance(surface, Surface):
         normals, depth = surface.normals, surface.depth
         inside = np.isfinite(depth)
         sigma = np.where(inside, np.degrees(surface.uncertainty), np.nan).astype(np.float32)
@@ -206,6 +234,9 @@ def _report(found: Solution | Relief, said: list[tuple[str, str]], options: argp
         depth = integrated.depth
         sigma = _uncertainty(found, (normals != 0).any(axis=-1) & np.isfinite(normals).all(axis=-1))
         rest = [("1 sigma", f"{_median(sigma):.2f} degrees at half of the normals"), *integrated.lines()]
+        if surface is not None:
+            why = "the lit pixels do not have the colors of the solution" if surface.status is Status.NOT_SOLVED else str(surface)
+            rest.append(("surface", f"only pixels that all lights reach, the whole surface is left out: {why}"))
     lines = [*said, *found.lines(), *rest]
     for label, text in lines:
         print(f"{label:<10} {text}")
@@ -215,7 +246,7 @@ def _report(found: Solution | Relief, said: list[tuple[str, str]], options: argp
     results.write("depth.tiff", depth)
     try:
         drawn = io.BytesIO()
-        (surface or found).plot().savefig(drawn, format="png", dpi=120)
+        (surface if isinstance(surface, Surface) else found).plot().savefig(drawn, format="png", dpi=120)
         results.write_bytes("overview.png", drawn.getvalue())
     except ImportError:
         print("no overview.png: pip install matplotlib")

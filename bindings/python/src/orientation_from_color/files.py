@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import io
 import json
 import os
-import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,8 @@ class FilePicture:
         says: How the file says that it stores light: "nothing", "linear", "sRGB" or "a curve".
         source: Where it says so.
         words: Size and samples, for people.
+        orientation: How it is stored, 1 to 8 as EXIF has them; the pixels are upright.
+        is_jpeg: Whether the file is a JPEG, whose black is not quite black.
     """
 
     pixels: npt.NDArray[Any]
@@ -39,12 +41,14 @@ class FilePicture:
     says: str
     source: str
     words: str
+    orientation: int = 1
+    is_jpeg: bool = False
 
 
 def read_picture(path: str) -> FilePicture:
     """Reads it as the file says that it was meant, or raises OSError where it cannot be read, or is cut or damaged."""
     content = Path(path).read_bytes()
-    says, source, orientation = _facts(path, content)
+    says, source, orientation, is_jpeg = _facts(path, content)
     decoded = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_UNCHANGED) if content else None
     if decoded is None:
         raise OSError(f"cannot read {path} as an image: it is cut or damaged, or of a kind that is not read")
@@ -65,39 +69,59 @@ def read_picture(path: str) -> FilePicture:
             mask = opaque
             words += "; its alpha channel is the mask where no other is given"
         pixels = np.ascontiguousarray(pixels[..., :3])
-    return FilePicture(rows(pixels), mask, says, source, words)
+    return FilePicture(rows(pixels), mask, says, source, words, orientation, is_jpeg)
 
 
-def read_mask(path: str) -> npt.NDArray[np.bool_]:
-    """A mask of any depth and color: what is not zero is inside, or of a JPEG what is half as bright as its brightest."""
+def read_mask(path: str, of: FilePicture | None = None) -> npt.NDArray[np.bool_]:
+    """A mask of any depth and color: what is not zero is inside, or of a JPEG what is half as bright as its brightest.
+
+    One that was drawn on the picture `of` as its file stores it is turned as the picture was.
+    """
     picture = read_picture(path)
     values = picture.pixels if picture.pixels.ndim == 2 else picture.pixels.max(axis=2)
     half = max(1.0, 0.5 * float(values.max()))
-    inside = values >= half if picture.source.startswith("its format") else values != 0
+    inside = values >= half if picture.is_jpeg else values != 0
     if picture.mask is not None:
         inside = picture.mask if not inside.any() else inside & picture.mask
+    if of is not None and of.orientation >= 5 and picture.orientation == 1:
+        size = of.pixels.shape[:2]
+        if inside.shape != size and inside.shape[::-1] == size:
+            inside = _upright(inside, of.orientation)
     if not inside.any():
         raise OSError(f"the mask {path} is empty: all its pixels are zero")
     return np.asarray(inside, np.bool_)
 
 
-def _facts(path: str, content: bytes) -> tuple[str, str, int]:
-    """What Pillow finds in the file: how it says that it stores light, where, and its orientation. OSError where it is cut."""
-    says, source, orientation = "nothing", "", 1
-    is_known = False
+@contextlib.contextmanager
+def _as_large_as_opencv_reads() -> Iterator[None]:
+    """Pillow takes pictures above 89 megapixels for an attack, and cameras make them."""
+    before = Image.MAX_IMAGE_PIXELS
+    Image.MAX_IMAGE_PIXELS = 1 << 30
     try:
-        with warnings.catch_warnings(), Image.open(io.BytesIO(content)) as image:
-            warnings.simplefilter("error", Image.DecompressionBombWarning)
+        yield
+    finally:
+        Image.MAX_IMAGE_PIXELS = before
+
+
+def _facts(path: str, content: bytes) -> tuple[str, str, int, bool]:
+    """What Pillow finds in the file: how it says that it stores light, where, its orientation, and whether it is a JPEG.
+
+    OSError where it is cut.
+    """
+    says, source, orientation = "nothing", "", 1
+    is_known = is_jpeg = False
+    try:
+        with _as_large_as_opencv_reads(), Image.open(io.BytesIO(content)) as image:
             is_known = True
+            is_jpeg, info = image.format in ("JPEG", "MPO"), dict(image.info)
             exif = image.getexif()
             orientation = int(exif.get(ExifTags.Base.Orientation, 1))
-            is_jpeg, info = image.format == "JPEG", dict(image.info)
             is_srgb_in_exif = exif.get_ifd(ExifTags.IFD.Exif).get(ExifTags.Base.ColorSpace) == 1
             image.load()  # an OSError where it is cut
-    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
         if is_known and "truncated" in str(error):
             raise OSError(f"{path} is cut or damaged: {error}") from None
-        return says, source, orientation if orientation in range(1, 9) else 1
+        return says, source, orientation if orientation in range(1, 9) else 1, is_jpeg
     if info.get("icc_profile"):
         says, source = _of_profile(info["icc_profile"])
     elif "srgb" in info:
@@ -109,7 +133,7 @@ def _facts(path: str, content: bytes) -> tuple[str, str, int]:
         says, source = "sRGB", "its EXIF color space"
     if is_jpeg and says == "nothing":
         says, source = "sRGB", "its format, as a JPEG holds sRGB unless it says otherwise"
-    return says, source, orientation if orientation in range(1, 9) else 1
+    return says, source, orientation if orientation in range(1, 9) else 1, is_jpeg
 
 
 def _of_profile(profile: bytes) -> tuple[str, str]:
@@ -134,13 +158,14 @@ class Results:
     """The files of a run in a folder, which are all there or none of them.
 
     report.json names the others as "files", as the C programs have it: those of an earlier run are removed first, and nothing
-    else is. Leave it by an exception, and nothing is left of the run.
+    else is. Leave it by an exception, and nothing is left of the run; files of an earlier one that it read are left, and named.
     """
 
     def __init__(self, folder: Path, names: Iterable[str], inputs: Iterable[str | None]) -> None:
         self.folder = folder
         self._names = list(names)
         self._inputs = [Path(path) for path in inputs if path]
+        self._spared: list[str] = []
         self._is_new = False
 
     def __enter__(self) -> Results:
@@ -167,8 +192,12 @@ class Results:
     def __exit__(self, kind: object, value: object, traceback: object) -> None:
         if kind is None:
             return
-        for name in [*self._names, "report.json"]:
+        for name in self._names:
             (self.folder / name).unlink(missing_ok=True)
+        if self._spared:
+            self._put("report.json", _json({"status": "not finished", "files": self._spared}))
+        else:
+            (self.folder / "report.json").unlink(missing_ok=True)
         if self._is_new:
             self.folder.rmdir()
 
@@ -211,7 +240,7 @@ class Results:
         try:
             found = json.loads(report.read_bytes())
             if found["program"] == _PROGRAM:
-                return [name for name in found["files"] if Path(name).name == name]
+                return [name for name in found["files"] if name and Path(name).name == name and name != ".."]
         except (ValueError, KeyError, TypeError):
             pass
         raise FileExistsError(f"{report} is not a report of this program's: move it, or give another folder")
