@@ -1,6 +1,6 @@
 /* Loaded before a program (LD_PRELOAD): the n-th call of a function fails, or kills the program. FAULT is "FUNCTION N" or
- * "FUNCTION N kill"; with FAULT_COUNT naming a file, how many calls there were is written there at the end. Calls count from main() on:
- * what fails before is not the program's to answer. Its children are spared. */
+ * "FUNCTION N kill"; with FAULT_COUNT naming a file, how many calls of each there were is written there at the end, a line for each. Calls
+ * count from main() on: what fails before is not the program's to answer. Its children are spared. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -13,17 +13,23 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+static const char *const names[] = {"open", "read", "fopen", "fread", "fwrite", "write", "fsync", "linkat", "rename", "unlink", "malloc"};
+enum { functions = sizeof names / sizeof names[0] };
+static long calls[functions];
 static char function[16], counts[512];
-static long number, count;
+static long number;
 static int kills, is_armed;
 static int (*real_main)(int, char **, char **);
 
 /* Whether this call is the one that fails. */
 static int fails(const char *name)
 {
-    if (!__atomic_load_n(&is_armed, __ATOMIC_RELAXED) || strcmp(name, function) != 0)
+    if (!__atomic_load_n(&is_armed, __ATOMIC_RELAXED))
         return 0;
-    if (__atomic_add_fetch(&count, 1, __ATOMIC_RELAXED) != number)
+    int i = 0;
+    while (i + 1 < functions && strcmp(name, names[i]) != 0)
+        i++;
+    if (__atomic_add_fetch(&calls[i], 1, __ATOMIC_RELAXED) != number || strcmp(name, function) != 0)
         return 0;
     if (kills)
         raise(SIGKILL);
@@ -119,7 +125,12 @@ static void report(void)
     if (counts[0] == '\0')
         return;
     FILE *const file = fopen(counts, "w");
-    if (file == NULL || fprintf(file, "%ld\n", count) < 0 || fclose(file) != 0)
+    if (file == NULL)
+        abort();
+    for (int i = 0; i < functions; i++)
+        if (fprintf(file, "%s %ld\n", names[i], calls[i]) < 0)
+            abort();
+    if (fclose(file) != 0)
         abort();
 }
 

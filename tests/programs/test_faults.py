@@ -18,6 +18,8 @@ import pictures as p
 
 BIN = Path(__file__).resolve().parents[2] / "target/c_examples"
 FUNCTIONS = ["open", "read", "fopen", "fread", "write", "fsync", "linkat", "rename", "unlink", "malloc"]
+# Which each program calls.
+CALLED = ["fopen", "fread", "write", "fsync", "rename", "unlink", "malloc"]
 # Where being killed is not the same as at the call before.
 DEADLY = ["write", "fsync", "linkat", "rename", "unlink"]
 WIDTH, HEIGHT = 64, 48
@@ -29,6 +31,15 @@ def some(count, function):
     if os.environ.get("FAULTS") == "all":
         few = 400 if function == "malloc" else count
     return sorted({round(1 + i * (count - 1) / max(few - 1, 1)) for i in range(few)}) if count else []
+
+
+def has_files_without_names(folder):
+    """Whether the file system has them, which then are linked to their names."""
+    try:
+        os.close(os.open(folder, os.O_TMPFILE | os.O_RDWR))
+    except OSError:
+        return False
+    return True
 
 
 def contents(folder):
@@ -75,15 +86,16 @@ class Faults(unittest.TestCase):
     def check(self, program, arguments, olds, status):
         """`olds` are the arguments of a run before, whose results must not be taken for those of this one."""
         good, before = self.folder / f"{program}_good", self.folder / f"{program}_before"
-        self.assertEqual(self.run_program(program, arguments, good).returncode, status)
+        counted = self.folder / f"{program}_count"
+        self.assertEqual(self.run_program(program, arguments, good, count=counted).returncode, status)
+        counts = {function: int(count) for function, count in map(str.split, counted.read_text().splitlines())}
+        for function in CALLED + ["linkat"] * has_files_without_names(self.folder):
+            self.assertGreater(counts[function], 0, f"{program} calls {function}, and that is not seen")
         self.assertEqual(self.run_program(program, olds, before).returncode, status)
         good, old = contents(good), contents(before)
         faults = []
         for function in FUNCTIONS:
-            counted = self.folder / "count"
-            self.run_program(program, arguments, self.folder / "counted", f"{function} 0", counted)
-            shutil.rmtree(self.folder / "counted")
-            calls = some(int(counted.read_text()), function)
+            calls = some(counts[function], function)
             faults += [(function, n, False) for n in calls] + [(function, n, True) for n in calls if function in DEADLY]
 
         def one(fault):
