@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <sstream>
 #ifdef OFC_HIGHGUI
 #include <opencv2/highgui.hpp>
@@ -97,10 +98,12 @@ bool is_whole(const std::filesystem::path &path)
     return end == size && size > 0;
 }
 
-// Puts a video in its place, whose writer says nothing of what could not be written.
+// Puts a video, if there is one, in its place, whose writer says nothing of what could not be written.
 void close(cv::VideoWriter &video, FileAside &file, int frames)
 {
     video.release();
+    if (frames == 0)
+        return;
     if (!is_whole(file.path()) || static_cast<int>(cv::VideoCapture(file.path()).get(cv::CAP_PROP_FRAME_COUNT)) != frames)
         throw std::runtime_error("cannot write all frames into " + file.path().string());
     file.finish();
@@ -138,7 +141,10 @@ int run(const Options &options)
         return writer;
     };
     cv::VideoWriter video, record;
-    FileAside video_file(out / "live.avi"), record_file(options.record);
+    FileAside video_file(out / "live.avi");
+    std::optional<FileAside> record_file;
+    if (!options.record.empty())
+        record_file.emplace(options.record);
     std::ostringstream contacts;
     contacts << "frame,touched,x_px,y_px,area,peak,peak_deviation,volume\n";
     int count = 0, touched = 0;
@@ -160,9 +166,9 @@ int run(const Options &options)
         if (!video.isOpened())
             video = open(video_file.path(), shown.size());
         video.write(shown);
-        if (!options.record.empty()) {
+        if (record_file) {
             if (!record.isOpened())
-                record = open(record_file.path(), frame.size());
+                record = open(record_file->path(), frame.size());
             record.write(frame);
         }
 #ifdef OFC_HIGHGUI
@@ -190,8 +196,8 @@ int run(const Options &options)
                            {"circulation_ratio", model.circulation_ratio}, {"balls", model.balls}, {"advice", model.advice},
                            {"region", model.region}};
     close(video, video_file, count);
-    if (!options.record.empty())
-        close(record, record_file, count);
+    if (record_file)
+        close(record, *record_file, count);
     WholeFile table(out / "contacts.csv");
     table.write(contacts.str().data(), contacts.str().size());
     table.finish();
@@ -201,7 +207,7 @@ int run(const Options &options)
             throw UsageError("there is no model to save: nothing round was pressed in");
         sensor.save(options.save_model);
     }
-    say_where(options.out, "live.avi");
+    say_where(options.out, count > 0 ? "live.avi" : "report.json");
     return sensor.has_model() ? 0 : 1;
 }
 

@@ -123,7 +123,9 @@ cv::Mat read_other(const std::string &path, const std::vector<unsigned char> &by
 
 bool is_named_as_picture(const std::filesystem::path &path)
 {
-    static const char *const endings[] = {".png", ".jpg", ".jpeg", ".jpe", ".jp2", ".tif", ".tiff", ".bmp", ".webp", ".ppm", ".pnm"};
+    // What OpenCV reads, where it is built with all it can be built with.
+    static const char *const endings[] = {".png", ".jpg", ".jpeg", ".jpe", ".jp2", ".tif", ".tiff", ".bmp", ".dib", ".webp", ".avif", ".ppm",
+                                          ".pgm", ".pbm", ".pnm", ".pam", ".pfm", ".exr", ".hdr", ".pic", ".sr", ".ras"};
     std::string ending = path.extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return std::find(std::begin(endings), std::end(endings), ending) != std::end(endings);

@@ -31,6 +31,12 @@ fs::path beside(const fs::path &path)
     return folder_of(path) / ("." + path.stem().string() + ".part" + path.extension().string());
 }
 
+// Whether a report may name it: a file in the folder itself.
+bool is_file_name(const std::string &name)
+{
+    return !name.empty() && name != "." && name != ".." && fs::path(name).filename() == name;
+}
+
 // Whether the file is on its device, as far as that can be asked for: files of some systems cannot be flushed, and say so.
 bool flushed(int descriptor)
 {
@@ -50,12 +56,14 @@ ResultFolder::ResultFolder(const fs::path &folder, const std::string &report, st
     old = listed();
     check_inputs(inputs);
     // Named before they are there: a run that is killed leaves no result that is no one's.
-    std::vector<std::string> files = old;
+    std::vector<std::string> files = spared;
+    files.insert(files.end(), old.begin(), old.end());
     files.insert(files.end(), this->names.begin(), this->names.end());
     try {
-        write_json(folder / report, {{"program", program}, {"status", "not finished"}, {"files", files}});
+        write_unfinished(files);
     } catch (const std::exception &) {
-        old.push_back(report);
+        if (spared.empty())
+            old.push_back(report);
         remove(old);
         throw;
     }
@@ -72,9 +80,12 @@ ResultFolder::~ResultFolder()
         if (is_kept)
             return;
         std::vector<std::string> files = names;
-        files.push_back(report);
+        if (spared.empty())
+            files.push_back(report);
         if (!remove(files))
             std::fprintf(stderr, "cannot remove what was written into %s: it is not the whole result of a run\n", folder.c_str());
+        if (!spared.empty())
+            write_unfinished(spared); // without it they would be no one's
         std::error_code is_not_empty;
         if (is_new)
             fs::remove(folder, is_not_empty);
@@ -94,6 +105,11 @@ void ResultFolder::keep(nlohmann::ordered_json contents)
     is_kept = true;
 }
 
+void ResultFolder::write_unfinished(const std::vector<std::string> &files) const
+{
+    write_json(folder / report, {{"program", program}, {"status", "not finished"}, {"files", files}});
+}
+
 // The results that the report in the folder names; none where it is no report, or of something else.
 std::vector<std::string> ResultFolder::listed() const
 {
@@ -105,7 +121,7 @@ std::vector<std::string> ResultFolder::listed() const
     if (!found.is_object() || found.value("program", nlohmann::json()) != program)
         throw UsageError((folder / report).string() + " is not a report of this program's: move it, or give another folder with --out");
     for (const nlohmann::json &name : found.value("files", nlohmann::json::array()))
-        if (name.is_string() && fs::path(name.get<std::string>()).filename() == name.get<std::string>())
+        if (name.is_string() && is_file_name(name.get<std::string>()))
             files.push_back(name.get<std::string>());
     return files;
 }

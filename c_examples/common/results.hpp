@@ -8,7 +8,8 @@
 #include <vector>
 
 // The folder for the results of a run. Its report, a JSON file, names the others as "files": those of an earlier run are removed, and
-// nothing else is. While the program runs its report says that it has not finished, and of a run that fails nothing is left.
+// nothing else is. While the program runs its report says that it has not finished. Of a run that fails nothing is left, but for results of
+// an earlier one that it read, which its report goes on to name.
 class ResultFolder {
   public:
     // Makes the folder and removes what an earlier run left. `names` are the files that the run may write beside its report, and
@@ -36,6 +37,7 @@ class ResultFolder {
     bool is_new = false, is_kept = false;
 
     std::vector<std::string> listed() const;
+    void write_unfinished(const std::vector<std::string> &files) const;
     void check_inputs(const std::vector<std::string> &inputs);
     bool remove(const std::vector<std::string> &files) const;
 };

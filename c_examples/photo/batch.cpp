@@ -3,7 +3,10 @@
 #include "common/progress.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <memory>
 #include <set>
@@ -19,26 +22,39 @@ namespace {
 
 struct Job {
     Options options;
-    std::unique_ptr<std::FILE, int (*)(std::FILE *)> errors = {nullptr, std::fclose};
+    std::unique_ptr<std::FILE, int (*)(std::FILE *)> errors = {nullptr, std::fclose}; // while the process runs
     pid_t process = -1;
     int status = 1;
+    bool has_report = false; // of this run
+    std::string error;
 };
 
-// The program for one picture, whose output no one reads and whose errors are kept.
-void begin(Job &job, const std::function<int(const Options &)> &body)
+// Added to the status of a process that ends without a report.
+constexpr int without_report = 64;
+
+// The program for one picture, whose output no one reads and whose errors are kept; false, with the error, where it cannot begin.
+bool begin(Job &job, const std::function<int(const Options &)> &body)
 {
-    job.errors.reset(std::tmpfile());
     std::fflush(stdout);
+    job.errors.reset(std::tmpfile());
     job.process = job.errors ? fork() : -1;
-    if (job.process < 0)
-        throw std::runtime_error("cannot begin another process");
-    if (job.process > 0)
-        return;
+    if (job.process < 0) {
+        job.error = std::string("cannot begin another process: ") + std::strerror(errno);
+        job.errors.reset();
+    }
+    if (job.process != 0)
+        return job.process > 0;
     dup2(fileno(job.errors.get()), STDERR_FILENO);
-    const bool is_quiet = std::freopen("/dev/null", "w", stdout) != nullptr;
-    const int status = guarded("ofc_photo", [&] { return is_quiet ? body(job.options) : 1; });
+    int missing = without_report;
+    const int status = guarded("ofc_photo", [&] {
+        if (std::freopen("/dev/null", "w", stdout) == nullptr)
+            throw std::runtime_error("standard output cannot be put aside");
+        const int answer = body(job.options);
+        missing = 0;
+        return answer;
+    });
     std::fflush(stderr);
-    _exit(status);
+    _exit(status + missing);
 }
 
 // The last line of what went wrong: libraries speak first.
@@ -62,28 +78,41 @@ std::string field(std::string text)
     return '"' + text + '"';
 }
 
+// What became of a process that has ended.
+void end(Job &job, int status)
+{
+    job.error = last_error(job.errors.get());
+    job.errors.reset();
+    if (WIFEXITED(status)) {
+        job.status = WEXITSTATUS(status) % without_report;
+        job.has_report = WEXITSTATUS(status) < without_report;
+    } else {
+        job.error = std::string("ended by a signal: ") + strsignal(WTERMSIG(status));
+    }
+}
+
 std::string number(const json &report, const json::json_pointer &where)
 {
     const json value = report.value(where, json());
     return value.is_number() ? value.dump() : "";
 }
 
-// What a run left in its folder; nothing where it failed.
-json report_in(const std::string &folder)
+// What a run says of its picture; nothing where it failed, whatever an earlier one left in its folder.
+json report_of(const Job &job)
 {
-    std::ifstream file(folder + "/report.json");
-    const json report = file ? json::parse(file, nullptr, false) : json();
+    std::ifstream file(job.options.out + "/report.json");
+    const json report = file && job.has_report ? json::parse(file, nullptr, false) : json();
     return report.is_object() ? report : json::object();
 }
 
 std::string row_of(const Job &job)
 {
-    const json report = report_in(job.options.out);
+    const json report = report_of(job);
     const std::string trust = report.value(json::json_pointer("/confidence/in_words"), json()).is_string()
                                   ? report["confidence"]["in_words"].get<std::string>()
-                                  : last_error(job.errors.get());
+                                  : job.error;
     std::ostringstream row;
-    row << field(job.options.image) << ',' << job.status << ',' << field(report.value("model", "ellipsoid")) << ','
+    row << field(job.options.image) << ',' << job.status << ',' << field(job.has_report ? report.value("model", "ellipsoid") : "") << ','
         << number(report, json::json_pointer("/confidence/expected_error_deg")) << ','
         << number(report, json::json_pointer("/uncertainty/median_deg")) << ','
         << number(report, json::json_pointer("/inliers/after_norms")) << ',' << field(trust) << '\n';
@@ -115,17 +144,22 @@ int run_each(const Options &options, const std::function<int(const Options &)> &
     const auto wait = [&] {
         int status = 0;
         const pid_t process = ::wait(&status);
+        if (process < 0 && errno != EINTR)
+            throw std::runtime_error(std::string("cannot wait for a process: ") + std::strerror(errno));
         for (Job &job : jobs)
-            if (job.process == process && process > 0)
-                job.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-        ended++;
+            if (job.process == process && process > 0) {
+                end(job, status);
+                ended++;
+            }
     };
+    // Who starts the program may have ignored it, and then no process can be waited for.
+    std::signal(SIGCHLD, SIG_DFL);
     while (ended < jobs.size()) {
         progress.stage(std::to_string(ended) + " of " + std::to_string(jobs.size()) + " pictures");
-        if (begun < jobs.size() && begun - ended < most)
-            begin(jobs[begun++], body);
-        else
+        if (begun == jobs.size() || begun - ended == most)
             wait();
+        else if (!begin(jobs[begun++], body))
+            ended++;
     }
     progress.clear();
     std::string table = "picture,status,model,expected_error_deg,median_sigma_deg,inliers,in_words\n";
@@ -133,7 +167,7 @@ int run_each(const Options &options, const std::function<int(const Options &)> &
     for (const Job &job : jobs) {
         table += row_of(job);
         solved += job.status == 0;
-        std::printf("%s: %s\n", job.options.image.c_str(), job.status == 0 ? "solved" : last_error(job.errors.get()).c_str());
+        std::printf("%s: %s\n", job.options.image.c_str(), job.status == 0 ? "solved" : job.error.c_str());
     }
     WholeFile file(out / "summary.csv");
     file.write(table.data(), table.size());

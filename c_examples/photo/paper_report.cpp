@@ -50,10 +50,10 @@ void write_paper_figures(const std::filesystem::path &folder, const Picture &pic
 {
     const ofc_solution &s = direct.solution;
     write_png(folder / paper_figures[0], plot_directions(triple(s.slant_rad), triple(s.tilts.tilt_rad),
-                                                           triple(s.ellipsoid.cosines), Sheet::panel(3)));
+                                                         triple(s.ellipsoid.cosines), Sheet::panel(3)));
     write_png(folder / paper_figures[1], plot_slants(FixedPointProblem::of(s), Sheet::panel()));
     write_png(folder / paper_figures[2], plot_colors(picture, s, direct.inliers, Sheet::panel()));
     if (direct.check)
         write_png(folder / paper_figures[3], channels_picture(picture, direct.inliers, direct.normals, s.orientation.f,
-                                                                direct.check->correlation));
+                                                              direct.check->correlation));
 }

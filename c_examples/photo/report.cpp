@@ -240,6 +240,8 @@ json report_of(const Result &result)
         report["depth"] = result.depth.report(result.surface);
     if (result.whole)
         report["surface"] = ::report(*result.whole);
+    else if (!result.whole_left_out.empty())
+        report["surface"] = {{"left_out", result.whole_left_out}};
     if (!result.uncertainty.empty())
         report["uncertainty"] = uncertainty(result);
     if (result.median_error_deg)
@@ -293,6 +295,8 @@ std::vector<Line> summary(const Result &result)
     if (result.whole)
         for (const Line &line : summary(*result.whole))
             lines.push_back(line);
+    else if (!result.whole_left_out.empty())
+        add_wrapped(lines, "surface", "only pixels that all lights reach, the whole surface is left out: " + result.whole_left_out);
     if (!result.uncertainty.empty())
         lines.push_back({"1 sigma", text("%.2f degrees at half of the normals, %.2f at nine tenths; noise %.2f",
                                          quantile(result.uncertainty, 0.5), quantile(result.uncertainty, 0.9),

@@ -38,6 +38,7 @@ struct Result {
     DepthOptions depth;             // what was wanted of it
     Surface surface;                // empty where there are no normals
     std::optional<Whole> whole;     // where it was made
+    std::string whole_left_out;     // why it was not, where it was wanted
     std::optional<Paint> paint;     // where it was looked for
     std::optional<ofc_check_result> check; // where there are normals
     std::vector<Doubt> doubts;      // which the uncertainty includes

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <iterator>
 #include <cmath>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 
 namespace {
@@ -58,8 +58,10 @@ bool has_color(const ofc_surface_light &light)
 
 void complete(Result &result, const Picture &picture, bool channels_are_lights)
 {
-    if (result.uncertainty.empty())
+    if (result.uncertainty.empty()) {
+        result.whole_left_out = "it is not known how sure the orientation is";
         return;
+    }
     Picture masked = picture;
     if (masked.mask.empty())
         masked.mask = enclosed(picture);
@@ -79,8 +81,12 @@ void complete(Result &result, const Picture &picture, bool channels_are_lights)
                                                    depth.ptr<float>(), depth.step, whole.classes.data, whole.classes.step,
                                                    &whole.result);
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-    if (status < 0)
+    if (status < 0) {
+        // There is an F, so that it is not that of the picture.
+        result.whole_left_out = status == OFC_STATUS_NOT_SOLVED ? "the lit pixels do not have the colors of the solution"
+                                                                : ofc_status_message(status);
         return;
+    }
     result.milliseconds.emplace_back("whole surface", elapsed.count());
     result.normals = normals;
     result.uncertainty = angles * degrees(1);

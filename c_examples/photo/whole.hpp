@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-// Puts the whole surface in the place of the normals, the uncertainty and the depth of a solved picture, where it is known how sure
-// the orientation is. Channels that are gray photographs, each under one light, say so. The mask of a picture without one is what its
+// Puts the whole surface in the place of the normals, the uncertainty and the depth of a solved picture, or says why it is
+// left out. Channels that are gray photographs, each under one light, say so. The mask of a picture without one is what its
 // pixels that are not black enclose.
 void complete(Result &result, const Picture &picture, bool channels_are_lights);
 

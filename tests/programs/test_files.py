@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pictures as p
+from PIL import Image
 
 BIN = Path(__file__).resolve().parents[2] / "target/c_examples"
 # Results that are quick to write.
@@ -233,6 +234,18 @@ class Files(Case):
         said, _ = self.photo("huge.png", status=2)
         self.assertNotIn("OpenCV", said)
 
+    def test_it_is_said_that_the_whole_surface_is_left_out(self):
+        # Three paints that hardly differ: the lit pixels are not those of one ellipsoid.
+        paint = np.random.default_rng(1).choice([0.95, 1, 1.05], (p.HEIGHT, p.WIDTH, 1), p=[0.2, 0.6, 0.2])
+        p.png(self.folder / "paints.png", p.bytes_of(self.light * paint))
+        one_paint = ["paints.png", "--model", "ellipsoid", "--paint", "even"]
+        said, report = self.photo(*one_paint)
+        self.assertIn("the whole surface is left out: the lit pixels do not have the colors of the solution", said)
+        self.assertEqual(list(report["surface"]), ["left_out"])
+        said, report = self.photo(*one_paint, "--lit-only")
+        self.assertNotIn("whole surface", said)
+        self.assertNotIn("surface", report)
+
     def test_the_size_is_printed(self):
         p.png(self.folder / "egg.png", p.bytes_of(self.light))
         self.assertIn("200 x 150, 8 bits in 3 channels", self.photo("egg.png")[0])
@@ -377,6 +390,68 @@ class Results(Case):
         self.assertEqual((self.out / "one/normals.tiff").read_bytes(), alone)
         self.assertFalse((self.out / "cut").exists())
 
+    def table(self):
+        with open(self.out / "summary.csv", newline="") as file:
+            return {Path(row["picture"]).name: row for row in csv.DictReader(file)}
+
+    def test_many_pictures_need_few_files_at_a_time(self):
+        many = self.folder / "many"
+        many.mkdir(exist_ok=True)
+        names = [f"{i}.png" for i in range(30)]
+        for name in names:
+            (many / name).write_bytes(b"no picture")
+        # With four there is none for a second process at a time, nor for what the first one reads.
+        for most in 24, 4:
+            limit = lambda most=most: resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+            self.run_program("ofc_photo", "many", *QUICK, "--out", self.out, status=1, preexec_fn=limit)
+            self.assertEqual(sorted(self.table()), sorted(names))
+            for row in self.table().values():
+                self.assertNotEqual(row["status"], "0")
+                self.assertNotEqual(row["in_words"], "")
+
+    def test_a_table_has_no_numbers_of_an_earlier_run(self):
+        several = self.folder / "again"
+        several.mkdir(exist_ok=True)
+        for name in "one.png", "two.png", "three.png":
+            shutil.copy(self.folder / "egg.png", several / name)
+        self.run_program("ofc_photo", "again", "--outputs", "normals", "--out", self.out)
+        self.assertTrue(all(row["expected_error_deg"] for row in self.table().values()))
+        (self.out / "two/inliers.png").write_bytes(b"my own")
+        large = np.random.default_rng(1).integers(1, 255, (4000, 5000, 3)).astype(np.uint8)
+        Image.fromarray(large).save(several / "three.png", compress_level=0)
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_CPU, (1, 1))
+
+        self.run_program("ofc_photo", "again", *QUICK, "--out", self.out, status=1, preexec_fn=limit)
+        rows = self.table()
+        self.assertEqual({name: row["status"] for name, row in rows.items()}, {"one.png": "0", "two.png": "2", "three.png": "1"})
+        for name, words in ("two.png", "inliers.png is there"), ("three.png", "ended by a signal"):
+            self.assertIn(words, rows[name]["in_words"])
+            self.assertEqual([rows[name][field] for field in ("model", "expected_error_deg", "median_sigma_deg", "inliers")], [""] * 4, name)
+
+    def test_what_a_failed_run_read_is_not_forgotten(self):
+        self.photo("egg.png")
+        self.integrate(self.out / "normals.tiff", "--known", "nope.tiff", status=2)
+        self.assertEqual(self.left(), ["normals.tiff", "report.json"])
+        self.assertEqual(json.loads((self.out / "report.json").read_text())["files"], ["normals.tiff"])
+        self.photo("egg.png")
+        self.assertEqual(self.left(), ["inliers.png", "normals.png", "normals.tiff", "report.json"])
+
+    def test_a_report_names_files_in_its_folder_alone(self):
+        self.out.mkdir(exist_ok=True)
+        (self.out / "report.json").write_text(json.dumps({"program": "ofc", "files": ["", ".", "..", "../egg.png", "normals.png"]}))
+        self.photo("egg.png")
+        self.assertTrue((self.folder / "egg.png").exists())
+
+    def test_a_folder_of_pictures_has_all_that_are_read(self):
+        kinds = self.folder / "kinds"
+        kinds.mkdir(exist_ok=True)
+        for name in "a.pgm", "b.pbm", "c.exr", "d.hdr", "e.avif", "f.PFM":
+            (kinds / name).write_bytes(b"no picture")
+        self.run_program("ofc_photo", "kinds", *QUICK, "--out", self.out, status=1)
+        self.assertEqual(len(self.table()), 6)
+
     def test_what_is_printed(self):
         for arguments in [], ["egg.png"]:
             self.assertEqual(self.run_program("ofc_photo", *arguments, "--quiet", *QUICK, "--out", self.out), "")
@@ -394,6 +469,10 @@ class Results(Case):
         p.png(frames / "1.png", np.full((80, 60, 4), [120, 120, 120, 255], np.uint8))
         self.run_program("ofc_live", "frames", "--out", self.out, status=1)
         self.assertEqual(self.left(), ["contacts.csv", "live.avi", "report.json"])
+        own = self.folder / "..part"
+        own.write_bytes(b"my own")
+        self.run_program("ofc_live", "frames", "--out", self.out, status=1)
+        self.assertTrue(own.exists())
         p.png(frames / "2.png", gray)
         self.assertIn("frame 2 is 80 x 60, the first one 60 x 80", self.run_program("ofc_live", "frames", "--out", self.out, status=2))
         self.assertEqual(self.left(), [])
@@ -401,6 +480,21 @@ class Results(Case):
         self.assertIn("8 bits", self.run_program("ofc_live", "frames", "--out", self.out, status=2))
         (frames / "2.png").write_bytes((frames / "1.png").read_bytes()[:60])
         self.assertIn("2.png", self.run_program("ofc_live", "frames", "--out", self.out, status=2))
+
+    def test_an_interrupt_before_the_first_frame_ends_as_after_the_last(self):
+        frames = self.folder / "slow"
+        frames.mkdir()
+        p.png(self.folder / "frame.png", np.full((60, 80, 3), 120, np.uint8))
+        os.mkfifo(frames / "0.png")
+        child = subprocess.Popen([BIN / "ofc_live", "slow", "--out", self.out], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        with open(frames / "0.png", "wb") as file:  # when it is read
+            child.send_signal(signal.SIGINT)
+            file.write((self.folder / "frame.png").read_bytes())
+        said, _ = child.communicate(timeout=60)
+        self.assertEqual(child.returncode, 1, said)
+        self.assertIn("look at report.json", said)
+        self.assertEqual(self.left(), ["contacts.csv", "report.json"])
+        self.assertEqual(json.loads((self.out / "report.json").read_text())["frames"], 0)
 
     def test_a_file_that_cannot_be_written_leaves_nothing(self):
         # As on a full disk: no file may be longer than so many bytes.
