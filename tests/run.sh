@@ -25,7 +25,7 @@ step() {
 }
 
 step "scripts"
-shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/benches/*.sh tests/determinism/*.sh tests/fuzz/run.sh tests/newcomer/run.sh ofc-ffi/package/*.sh bindings/*/*.sh docs/*.sh
+shellcheck -x .ci/run .ci/*.sh c_examples/*.sh c_examples/firmware/*.sh tests/*.sh tests/benches/*.sh tests/benches/peers/*.sh tests/determinism/*.sh tests/fuzz/run.sh tests/newcomer/run.sh ofc-ffi/package/*.sh bindings/*/*.sh docs/*.sh
 
 step "format and lints"
 cargo fmt --all --check
