@@ -2320,6 +2320,8 @@ ofc_status ofc_rig_normals(const ofc_rig_model *model, const ofc_image *image, c
                            const ofc_relief_class *classes, float *normals, size_t normals_stride_bytes,
                            float *uncertainty, size_t uncertainty_stride_bytes);
 
+#define OFC_RIG_MODEL_BYTES 1368 ///< The bytes of a saved model.
+
 /// Writes a model as bytes that are the same on every target: magic number, byte order, version, size, numbers, checksum.
 /// @param model  The solved rig.
 /// @param bytes  Output: OFC_RIG_MODEL_BYTES bytes.
@@ -2371,7 +2373,6 @@ ofc_status ofc_rig_contact_measure(const ofc_relief_class *classes, int32_t widt
 ofc_status ofc_rig_background_follow(const ofc_image *image, const ofc_relief_class *classes, double saturation,
                                      double rate, float *background, size_t background_stride_bytes);
 
-#define OFC_RIG_MODEL_BYTES 1368 ///< The bytes of a saved model.
 /// What was seen of a frame so far. Made by ofc_rig_rows_begin(); plain numbers, which may be copied.
 typedef struct ofc_rig_rows {
     double sums[2]; ///< The sums of the columns and of the rows of the contact's pixels.
@@ -2392,8 +2393,9 @@ ofc_status ofc_rig_rows_begin(ofc_rig_rows *rows);
 /// microcontrollers.
 ///
 /// A cell, as wide as one of ofc_rig_classify() and one row high, is touched where it differs from the plane by more than noise together with both
-/// beside it. Rows above and below are not looked at: borders are less smooth than those of whole frames.
-/// @param model  The solved rig, read in place.
+/// beside it. Rows above and below are not looked at: borders are less smooth than those of whole frames. Pixels beyond the last whole cell of a row
+/// have the class of that cell, and are not in the area of the contact.
+/// @param model  The solved rig, read in place: the same one for all rows of a frame, its numbers are checked with the first row.
 /// @param rows  In and out: the frame so far, from ofc_rig_rows_begin().
 /// @param row  A picture of height 1: the row after the last one.
 /// @param background  The same row without a contact; NULL to take the plane that the model has, which is right where the frames that the

@@ -79,8 +79,9 @@ pub unsafe extern "C" fn ofc_rig_rows_begin(rows: *mut ofc_rig_rows) -> ofc_stat
 /// microcontrollers.
 ///
 /// A cell, as wide as one of ofc_rig_classify() and one row high, is touched where it differs from the plane by more than noise together with both
-/// beside it. Rows above and below are not looked at: borders are less smooth than those of whole frames.
-/// @param model  The solved rig, read in place.
+/// beside it. Rows above and below are not looked at: borders are less smooth than those of whole frames. Pixels beyond the last whole cell of a row
+/// have the class of that cell, and are not in the area of the contact.
+/// @param model  The solved rig, read in place: the same one for all rows of a frame, its numbers are checked with the first row.
 /// @param rows  In and out: the frame so far, from ofc_rig_rows_begin().
 /// @param row  A picture of height 1: the row after the last one.
 /// @param background  The same row without a contact; NULL to take the plane that the model has, which is right where the frames that the

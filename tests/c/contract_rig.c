@@ -1,5 +1,5 @@
 /* A rig: bumps are added, merged and solved, the scale is known, set or unknown, and bad arguments leave everything as it was. */
-#include "gel.h"
+#include "ball.h"
 
 static struct {
     ofc_rig rig;
@@ -11,29 +11,7 @@ static struct {
     float uncertainty[DOWN][ACROSS];
     uint8_t saved[OFC_RIG_MODEL_BYTES + 1];
     ofc_rig_contact contact;
-    ofc_rig_rows rows;
-} out, kept;
-
-static const double radius = 60;
-
-/* What is refused changes nothing. */
-#define REFUSED_AS_IT_WAS(status, call)                                                                                \
-    do {                                                                                                               \
-        memcpy(&kept, &out, sizeof out);                                                                               \
-        assert_int_equal(call, status);                                                                                \
-        assert_memory_equal(&kept, &out, sizeof out);                                                                  \
-    } while (0)
-
-/* A spherical cap in a skirt. */
-static void cap(double u, double v, double *p, double *q)
-{
-    const double rim = 24, skirt = 10, steepest = rim / sqrt(radius * radius - rim * rim), r = sqrt(u * u + v * v);
-    const double slope = r < rim            ? r / sqrt(radius * radius - r * r)
-                         : r < rim + skirt ? steepest * (rim + skirt - r) / skirt
-                                           : 0;
-    *p = r > 0 ? -u / r * slope : 0;
-    *q = r > 0 ? -v / r * slope : 0;
-}
+} out;
 
 static int prepare(void **state)
 {
@@ -53,7 +31,6 @@ static ofc_status add(const ofc_image *image, const ofc_image *background, doubl
 /* Four presses of a ball. */
 static void press(double ball, int has_center)
 {
-    static const double places[4][2] = {{60, 50}, {100, 50}, {60, 75}, {100, 70}};
     const ofc_image image = image_of(frame), below = image_of(plane);
     assert_int_equal(ofc_rig_init(ACROSS, DOWN, &out.rig, &out.balls), OFC_STATUS_OK);
     for (int i = 0; i < 4; i++) {
@@ -411,102 +388,13 @@ static void a_background_is_followed(void **state)
         REFUSED(OFC_STATUS_INVALID_PARAMETER, out, FOLLOW(&image, classes[0], 0, rates[i], target, stride));
 }
 
-static ofc_image row_of(const void *pixels, int y)
-{
-    ofc_image row = image_of(pixels);
-    row.pixels = (const uint8_t *)pixels + (size_t)y * ACROSS * 3;
-    row.height = 1;
-    return row;
-}
-
-static ofc_status looked(const ofc_image *image)
-{
-    return ofc_rig_row(&some_model, &out.rows, image, NULL, out.classes[0], out.normals[0][0]);
-}
-
-static void rows_are_seen(void **state)
-{
-    (void)state;
-    press(radius, 0);
-    assert_int_equal(ofc_rig_solve(&out.rig, &out.balls, &params, &some_model), OFC_STATUS_OK);
-    static uint8_t classes[DOWN][ACROSS];
-    static float normals[DOWN][ACROSS + 1][3];
-    ofc_rig_contact contact;
-    for (int has_background = 0; has_background < 2; has_background++) {
-        assert_int_equal(ofc_rig_rows_begin(&out.rows), OFC_STATUS_OK);
-        memset(&out.contact, PATTERN, sizeof out.contact);
-        REFUSED(OFC_STATUS_NO_RELIEF, out.contact, ofc_rig_rows_contact(&out.rows, 0.5, &out.contact));
-        for (int y = 0; y < DOWN; y++) {
-            const ofc_image row = row_of(frame, y), below = row_of(plane, y);
-            assert_int_equal(ofc_rig_row(&some_model, &out.rows, &row, has_background ? &below : NULL, classes[y], normals[y][0]),
-                             OFC_STATUS_OK);
-        }
-        assert_true(mean_error(classes, normals, 500) < 0.06);
-        assert_true(normals[3][3][2] == 1 && classes[3][3] == OFC_RELIEF_PLANE);
-        assert_int_equal(ofc_rig_rows_contact(&out.rows, 0.5, &contact), OFC_STATUS_OK);
-        assert_true(fabs(contact.center[0] - 78) < 1 && fabs(contact.center[1] - 60) < 1);
-        int pixels = 0;
-        for (int i = 0; i < ALL; i++)
-            pixels += classes[i / ACROSS][i % ACROSS] == OFC_RELIEF_CONTACT;
-        assert_true(fabs(contact.area - 0.25 * pixels) < 1e-9 && isnan(contact.peak) && contact.peak_place[0] == -1);
-        assert_true(contact.bounds[0] < 60 && contact.bounds[1] < 42 && contact.bounds[2] > 96 && contact.bounds[3] > 78);
-    }
-    const ofc_image row = row_of(frame, 0), plain = row_of(plane, 0);
-#define ROW(model, rows, image, background, classes, normals) ofc_rig_row(model, rows, image, background, classes, normals)
-    memset(&out, PATTERN, sizeof out);
-    assert_int_equal(ofc_rig_rows_begin(&out.rows), OFC_STATUS_OK);
-    for (int y = 0; y < DOWN; y++)
-        assert_int_equal(ROW(&some_model, &out.rows, &plain, NULL, NULL, NULL), OFC_STATUS_OK);
-    /* Whatever it is refused for, the frame stays as it was, and so do classes and normals. */
-    const ofc_rig_rows all = out.rows;
-    memset(&out, PATTERN, sizeof out);
-    out.rows = all;
-    REFUSED_AS_IT_WAS(OFC_STATUS_TOO_MANY_ROWS, ROW(&some_model, &out.rows, &row, NULL, out.classes[0], out.normals[0][0]));
-    assert_int_equal(ofc_rig_rows_begin(&out.rows), OFC_STATUS_OK);
-    refuses_bad_images(looked, out.classes, sizeof out.classes);
-    const ofc_image narrow = {.pixels = frame, .width = ACROSS - 1, .height = 1, .row_stride_bytes = ACROSS * 3, .format = OFC_PIXEL_RGB8};
-    const ofc_image whole = image_of(frame);
-    REFUSED_AS_IT_WAS(OFC_STATUS_ROW_MISMATCH, looked(&narrow));
-    REFUSED_AS_IT_WAS(OFC_STATUS_ROW_MISMATCH, looked(&whole));
-    REFUSED_AS_IT_WAS(OFC_STATUS_ROW_MISMATCH, ROW(&some_model, &out.rows, &row, &narrow, NULL, NULL));
-    REFUSED_AS_IT_WAS(OFC_STATUS_NULL_POINTER, ROW(NULL, &out.rows, &row, NULL, NULL, NULL));
-    REFUSED_AS_IT_WAS(OFC_STATUS_NULL_POINTER, ROW(&some_model, NULL, &row, NULL, NULL, NULL));
-    REFUSED_AS_IT_WAS(OFC_STATUS_NULL_POINTER, looked(NULL));
-    REFUSED_AS_IT_WAS(OFC_STATUS_OVERLAP, ROW(&some_model, &out.rows, &row, NULL, NULL, (float *)(void *)out.rows.sums));
-    REFUSED_AS_IT_WAS(OFC_STATUS_OVERLAP, ROW(&some_model, &out.rows, &row, NULL, (uint8_t *)frame, NULL));
-    REFUSED_AS_IT_WAS(OFC_STATUS_MISALIGNED, ROW(&some_model, &out.rows, &row, NULL, NULL, (float *)(void *)&out.classes[0][1]));
-    ofc_rig_model bad = some_model;
-    bad.terms = 0;
-    REFUSED_AS_IT_WAS(OFC_STATUS_NOT_SOLVED, ROW(&bad, &out.rows, &row, NULL, NULL, NULL));
-    bad.terms = 4;
-    REFUSED_AS_IT_WAS(OFC_STATUS_INVALID_PARAMETER, ROW(&bad, &out.rows, &row, NULL, NULL, NULL));
-    double *const numbers[] = {&bad.slopes[7], &bad.plane[3], &bad.noise[1], &bad.saturation};
-    for (int i = 0; i < 4; i++) {
-        bad = some_model;
-        *numbers[i] = (double)NAN;
-        REFUSED_AS_IT_WAS(OFC_STATUS_INVALID_PARAMETER, ROW(&bad, &out.rows, &row, NULL, NULL, NULL));
-    }
-    bad = some_model;
-    bad.height = 0;
-    REFUSED_AS_IT_WAS(OFC_STATUS_INVALID_PARAMETER, ROW(&bad, &out.rows, &row, NULL, NULL, NULL));
-    REFUSED_AS_IT_WAS(OFC_STATUS_NULL_POINTER, ofc_rig_rows_begin(NULL));
-    REFUSED_AS_IT_WAS(OFC_STATUS_NULL_POINTER, ofc_rig_rows_contact(NULL, 1, &out.contact));
-    REFUSED_AS_IT_WAS(OFC_STATUS_NULL_POINTER, ofc_rig_rows_contact(&out.rows, 1, NULL));
-    const double sizes[] = {0, -1, INFINITY, (double)NAN};
-    for (int i = 0; i < 4; i++)
-        REFUSED_AS_IT_WAS(OFC_STATUS_INVALID_PARAMETER, ofc_rig_rows_contact(&out.rows, sizes[i], &out.contact));
-    /* A frame that nobody began may hold anything. */
-    memset(&out.rows, 0xff, sizeof out.rows);
-    assert_int_equal(looked(&row), OFC_STATUS_OK);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(presses_are_learned), cmocka_unit_test(what_adds_nothing_has_a_reason),
         cmocka_unit_test(bad_arguments),       cmocka_unit_test(bad_models),
         cmocka_unit_test(models_are_kept),     cmocka_unit_test(a_contact_is_measured),
-        cmocka_unit_test(a_background_is_followed), cmocka_unit_test(rows_are_seen),
+        cmocka_unit_test(a_background_is_followed),
     };
     return cmocka_run_group_tests(tests, prepare, NULL);
 }

@@ -152,9 +152,8 @@ fn look(mut job: Job, frame: &mut Rows, wanted: &mut Wanted) {
     let (y, grid) = (frame.seen.rows, job.grid);
     // Rows beyond the last whole cells are like them.
     if y.checked_rem(grid.side) == Some(0) && y < grid.height * grid.side {
-        if job.background.is_none() {
-            job.set_plane(frame.reciprocals, y);
-        }
+        // A row with a background does not use them, but the next one may come without.
+        job.set_plane(frame.reciprocals, y);
         frame.seen.contact = wider(&narrower(&job.touched(frame.reciprocals)));
     }
     frame.seen.add(&grid);
