@@ -27,6 +27,7 @@ mod grid;
 mod information;
 mod integrable;
 mod moments;
+mod noise;
 mod outward;
 mod record;
 mod result;

@@ -115,15 +115,15 @@ impl<'w> Cells<'w> {
         [(x * self.side) as f64 + half, -((y * self.side) as f64) - half]
     }
 
-    /// The sums of two by two cells, the top left one given, about their common corner.
-    pub fn two_by_two(&self, x: usize, y: usize) -> Moments {
-        let half = 0.5 * self.side as f64;
-        let mut sums = Moments::default();
-        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-            let (right, up) = (if dx == 0 { -half } else { half }, if dy == 0 { half } else { -half });
-            sums.add(&self.at(x + dx, y + dy), right, up);
-        }
-        sums
+    /// The sums of two by two cells, the top left one given, about their common corner; `None` where there are not so many.
+    pub fn two_by_two(&self, x: usize, y: usize) -> Option<Moments> {
+        let (cells, _) = self.numbers.as_chunks::<NUMBERS>();
+        let row = |y: usize| {
+            let row = cells.get(y * self.width + x..).unwrap_or_default();
+            row.first_chunk::<2>().filter(|_| x + 1 < self.width)
+        };
+        let ([top_left, top_right], [bottom_left, bottom_right]) = (row(y)?, row(y + 1)?);
+        Some(Moments::of_four([top_left, top_right, bottom_left, bottom_right], 0.5 * self.side as f64))
     }
 
     /// Makes cells of twice the side in place; false where there is not even one.
@@ -137,7 +137,7 @@ impl<'w> Cells<'w> {
                 // What is overwritten has been read: cell (x, y) comes no later than (2x, 2y).
                 let sums = self.two_by_two(2 * x, 2 * y);
                 let (cells, _) = self.numbers.as_chunks_mut::<NUMBERS>();
-                if let Some(cell) = cells.get_mut(y * width + x) {
+                if let (Some(sums), Some(cell)) = (sums, cells.get_mut(y * width + x)) {
                     sums.store(cell);
                 }
             }

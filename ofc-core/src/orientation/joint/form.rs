@@ -9,35 +9,25 @@ pub(super) struct Form(pub [f64; 21]);
 impl Form {
     pub const ZERO: Self = Self([0.0; 21]);
 
-    /// Adds `weight v v^T`.
-    pub fn add_square(&mut self, v: &[f64; 6], weight: f64) {
-        let mut slots = self.0.iter_mut();
-        for (i, a) in v.iter().enumerate() {
-            for b in v.iter().skip(i) {
-                if let Some(slot) = slots.next() {
-                    *slot += weight * a * b;
-                }
-            }
-        }
+    /// `[[xx, xy], [xy, yy]]` of symmetric 3x3 matrices.
+    pub fn of_blocks(xx: &Mat3, xy: &Mat3, yy: &Mat3) -> Self {
+        let ([[a, b, c], [_, d, e], [_, _, f]], [[g, h, i], [_, j, k], [_, _, l]]) = (*xx, *xy);
+        let [[m, n, o], [_, p, q], [_, _, r]] = *yy;
+        Self([a, b, c, g, h, i, d, e, h, j, k, f, i, k, l, m, n, o, p, q, r])
     }
 
-    /// Adds `weight [[xx c, xy c], [xy c, yy c]]` with a symmetric 3x3 matrix `c`.
-    pub fn add_noise(&mut self, c: &Mat3, [xx, xy, yy]: [f64; 3], weight: f64) {
-        let mut slots = self.0.iter_mut();
-        for (i, row) in c.iter().enumerate() {
-            let upper = row.iter().skip(i).map(|entry| xx * entry);
-            for term in upper.chain(row.iter().map(|entry| xy * entry)) {
-                if let Some(slot) = slots.next() {
-                    *slot += weight * term;
-                }
-            }
-        }
-        for (i, row) in c.iter().enumerate() {
-            for entry in row.iter().skip(i) {
-                if let Some(slot) = slots.next() {
-                    *slot += weight * yy * entry;
-                }
-            }
+    /// Adds `weight v v^T`.
+    #[inline]
+    pub fn add_square(&mut self, v: &[f64; 6], weight: f64) {
+        let [a, b, c, d, e, f] = *v;
+        let [aw, bw, cw, dw, ew, fw] = v.map(|entry| weight * entry);
+        let terms = [
+            [aw * a, aw * b, aw * c, aw * d, aw * e, aw * f, bw * b],
+            [bw * c, bw * d, bw * e, bw * f, cw * c, cw * d, cw * e],
+            [cw * f, dw * d, dw * e, dw * f, ew * e, ew * f, fw * f],
+        ];
+        for (slot, term) in self.0.iter_mut().zip(terms.as_flattened()) {
+            *slot += term;
         }
     }
 
@@ -84,21 +74,19 @@ mod tests {
         for _ in 0..20 {
             let rows = [(); 3].map(|()| [(); 3].map(|()| number()));
             let [r1, r2, _] = rows;
-            let (mut form, mut expected) = (Form::ZERO, 0.0);
+            let [xx, xy, yy] = [(); 3].map(|()| {
+                let [a, b, c, d, e, f] = [(); 6].map(|()| number());
+                [[a, b, c], [b, d, e], [c, e, f]]
+            });
+            let mut form = Form::of_blocks(&xx, &xy, &yy);
+            let value = |c, a, b| dot(a, apply(c, b));
+            let mut expected = value(&xx, r1, r1) + 2.0 * value(&xy, r1, r2) + value(&yy, r2, r2);
             for _ in 0..3 {
                 let (v, weight): ([f64; 6], _) = ([(); 6].map(|()| number()), number());
                 form.add_square(&v, weight);
                 let [a, b, c, d, e, f] = v;
                 let s = dot([a, b, c], r1) + dot([d, e, f], r2);
                 expected += weight * s * s;
-                let [xx, xy, xz, yy, yz, zz] = [(); 6].map(|()| number());
-                let c = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-                let (variance, weight) = ([(); 3].map(|()| number()), number());
-                form.add_noise(&c, variance, weight);
-                let [along, mixed, across] = variance;
-                let (one, other) = (apply(&c, r1), apply(&c, r2));
-                let noise = along * dot(r1, one) + 2.0 * mixed * dot(r1, other) + across * dot(r2, other);
-                expected += weight * noise;
             }
             let mut twice = form;
             twice.add(&form);

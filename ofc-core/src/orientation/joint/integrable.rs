@@ -15,6 +15,7 @@ use super::constants::{
 };
 use super::form::Form;
 use super::information::{inverse, trace};
+use super::noise::{self, TERMS};
 use super::outward::Outward;
 use super::record::{Record, Records};
 use super::search::{derivatives, minimum};
@@ -47,16 +48,16 @@ impl Integrable {
         let mut form =
             Self { squares: Form::ZERO, noise: Form::ZERO, model: 0.0, factor: independent, independent };
         let mut rows = rows;
-        let mut parts = Sums { squares: [Form::ZERO; PARTS * PARTS], noise: [Form::ZERO; PARTS * PARTS] };
+        let mut parts = Sums { squares: [Form::ZERO; PARTS * PARTS], noise: [[0.0; TERMS]; PARTS * PARTS] };
         for round in 0..ROUNDS {
+            let variance = noise::variance(&rows, noise);
             let of = |record: &Record| {
                 let s = record.s(&rows);
-                [s * s, record.variance_at(noise, &rows)]
+                [s * s, noise::total(&variance, &record.noise_terms())]
             };
             let model = excess(records, of, MEDIAN_OF_ONE)?;
-            parts.weigh(records, noise, &rows, model.model, round > 0);
-            form.squares = sum(&parts.squares);
-            form.noise = sum(&parts.noise);
+            parts.weigh(records, &variance, &rows, model.model, round > 0);
+            (form.squares, form.noise) = parts.total(noise);
             form.model = (form.squares.at(&rows) - form.noise.at(&rows)).max(0.0);
             let cost = |rows: &Mat3| form.cost(rows) + prior(rows);
             rows = if round == 0 {
@@ -65,7 +66,7 @@ impl Integrable {
                 polish(rows, cost(&rows), ROUND_EVALUATIONS, cost).0
             };
             form.model = (form.squares.at(&rows) - form.noise.at(&rows)).max(0.0);
-            form.factor = parts.information(&form, &rows, systematic / (model.noise + model.model))?;
+            form.factor = parts.information(&form, noise, &rows, systematic / (model.noise + model.model))?;
         }
         Some((form, rows))
     }
@@ -110,27 +111,22 @@ fn excess(records: &mut Records, of: impl Fn(&Record) -> [f64; 2], median: f64) 
     Some(Excess { model: (square / median - noise).max(0.0), noise })
 }
 
-/// Sums by part of the picture.
+/// Sums by part of the picture: of squares, and of what their noise is linear in.
 struct Sums {
     squares: [Form; PARTS * PARTS],
-    noise: [Form; PARTS * PARTS],
-}
-
-fn sum(forms: &[Form]) -> Form {
-    let mut total = Form::ZERO;
-    for form in forms {
-        total.add(form);
-    }
-    total
+    noise: [noise::Terms; PARTS * PARTS],
 }
 
 impl Sums {
-    /// The sums with the weights that windows have at `rows`; `robust` ones where s^2 is too large for its variance.
+    /// The sums with the weights that windows have at `rows`, where `variance` makes that of `s`; `robust` ones where s^2 is too
+    /// large for its variance.
     #[inline(never)]
-    fn weigh(&mut self, records: &Records, noise: &Mat3, rows: &Mat3, model: f64, robust: bool) {
-        self.squares.iter_mut().chain(&mut self.noise).for_each(|form| *form = Form::ZERO);
+    fn weigh(&mut self, records: &Records, variance: &noise::Terms, rows: &Mat3, model: f64, robust: bool) {
+        self.squares = [Form::ZERO; PARTS * PARTS];
+        self.noise = [[0.0; TERMS]; PARTS * PARTS];
         for record in records.iter() {
-            let expected = record.variance_at(noise, rows) + model;
+            let terms = record.noise_terms();
+            let expected = noise::total(variance, &terms) + model;
             if expected.is_nan() || expected <= 0.0 {
                 continue;
             }
@@ -141,20 +137,30 @@ impl Sums {
                 weight /= excess * excess;
             }
             let part = records.parts.of(record.at);
-            if let Some(form) = self.squares.get_mut(part) {
+            if let (Some(form), Some(noise)) = (self.squares.get_mut(part), self.noise.get_mut(part)) {
                 form.add_square(&record.v, weight);
-            }
-            if let Some(form) = self.noise.get_mut(part) {
-                form.add_noise(&record.cross_noise(noise), record.variance, weight);
+                for (sum, term) in noise.iter_mut().zip(terms) {
+                    *sum += weight * term;
+                }
             }
         }
+    }
+
+    /// The forms of all parts together: of squares, and of noise.
+    fn total(&self, noise: &Mat3) -> (Form, Form) {
+        let (mut squares, mut terms) = (Form::ZERO, [0.0; TERMS]);
+        self.squares.iter().for_each(|form| squares.add(form));
+        for part in &self.noise {
+            terms.iter_mut().zip(part).for_each(|(sum, term)| *sum += term);
+        }
+        (squares, noise::form(&terms, noise))
     }
 
     /// The factor that makes a log likelihood of the ratio of `form` near its minimum `rows`: 3 over the trace of
     /// H^-1 G, with H its second derivatives and G the scatter of its gradient, but no more than independent windows would
     /// give, and less where errors are systematic: `share` of s^2 they are.
     #[inline(never)]
-    fn information(&self, form: &Integrable, rows: &Mat3, share: f64) -> Option<f64> {
+    fn information(&self, form: &Integrable, noise: &Mat3, rows: &Mat3, share: f64) -> Option<f64> {
         let expected = form.noise.at(rows) + form.model;
         if expected.is_nan() || expected <= 0.0 {
             return None;
@@ -162,12 +168,13 @@ impl Sums {
         let ratio = form.ratio(rows);
         let (_, hessian) = derivatives(rows, |rows| form.ratio(rows));
         let (mut used, mut mean, mut scatter) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
-        for (squares, noise) in self.squares.iter().zip(&self.noise) {
+        for (squares, terms) in self.squares.iter().zip(&self.noise) {
             if *squares == Form::ZERO {
                 continue;
             }
+            let own_noise = noise::form(terms, noise);
             let (gradient, _) =
-                derivatives(rows, |rows| (squares.at(rows) - ratio * noise.at(rows)) / expected);
+                derivatives(rows, |rows| (squares.at(rows) - ratio * own_noise.at(rows)) / expected);
             used += 1.0;
             for ((mean, row), a) in mean.iter_mut().zip(&mut scatter).zip(gradient) {
                 *mean += a;

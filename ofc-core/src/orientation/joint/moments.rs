@@ -16,6 +16,16 @@ pub(super) struct Moments {
     pub along_y: [f64; 3],
 }
 
+/// The sum of two, the second times `sign`.
+#[inline]
+fn plus(a: &[f64; NUMBERS], b: &[f64; NUMBERS], sign: f64) -> [f64; NUMBERS] {
+    let mut sum = *a;
+    for (sum, b) in sum.iter_mut().zip(b) {
+        *sum += sign * b;
+    }
+    sum
+}
+
 /// The plane `N = middle + x N_x + y N_y` through the inliers of a square, about their mean position.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
@@ -87,6 +97,36 @@ impl Moments {
         }
     }
 
+    /// The sums of two by two squares (top left and right, bottom left and right) about their common corner, from which the middles of all
+    /// four are `half` away along each axis.
+    #[inline]
+    pub fn of_four(squares: [&[f32; NUMBERS]; 4], half: f64) -> Self {
+        let [top_left, top_right, bottom_left, bottom_right] = squares.map(|numbers| numbers.map(f64::from));
+        let [left, right] = [plus(&top_left, &bottom_left, 1.0), plus(&top_right, &bottom_right, 1.0)];
+        let [top, bottom] = [plus(&top_left, &top_right, 1.0), plus(&bottom_left, &bottom_right, 1.0)];
+        let all = plus(&left, &right, 1.0);
+        let [right, up] =
+            [plus(&right, &left, -1.0), plus(&top, &bottom, -1.0)].map(|sums| sums.map(|sum| half * sum));
+        let [n, x, y, xx, xy, yy, a, b, c, d, e, f, g, h, i] = all;
+        let [across, right_x, right_y, .., u, v, w, _, _, _, _, _, _] = right;
+        let [above, up_x, up_y, .., p, q, r, _, _, _, _, _, _] = up;
+        let ([tl, ..], [tr, ..], [bl, ..], [br, ..]) = (top_left, top_right, bottom_left, bottom_right);
+        let square = half * half;
+        Self {
+            position: [
+                n,
+                x + across,
+                y + above,
+                xx + 2.0 * right_x + square * n,
+                xy + right_y + up_x + square * ((tr - tl) - (br - bl)),
+                yy + 2.0 * up_y + square * n,
+            ],
+            normal: [a, b, c],
+            along_x: [d + u, e + v, f + w],
+            along_y: [g + p, h + q, i + r],
+        }
+    }
+
     /// The plane; `None` where the inliers lie on a line.
     pub fn plane(&self) -> Option<Plane> {
         let [n, x, y, xx, xy, yy] = self.position;
@@ -144,6 +184,26 @@ mod tests {
         let mut numbers = [0.0; NUMBERS];
         own.store(&mut numbers);
         assert!(close(&Moments::load(&numbers), &own) && (own.count() - 30.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn two_by_two_squares_are_their_moved_sums() {
+        let mut rng = Rng::new(6);
+        let mut numbers = [[0.0; NUMBERS]; 4];
+        let mut expected = Moments::default();
+        for (numbers, [dx, dy]) in
+            numbers.iter_mut().zip([[-2.0, 2.0], [2.0, 2.0], [-2.0, -2.0], [2.0, -2.0]])
+        {
+            let mut own = Moments::default();
+            for _ in 0..10 {
+                let [x, y, a, b, c] = [(); 5].map(|()| 4.0 * rng.unit() - 2.0);
+                own.add_pixel(x, y, [a, b, c]);
+            }
+            own.store(numbers);
+            expected.add(&own, dx, dy);
+        }
+        let found = Moments::of_four(numbers.each_ref(), 2.0);
+        assert!(close(&found, &expected), "{found:?} {expected:?}");
     }
 
     #[test]

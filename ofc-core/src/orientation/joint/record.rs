@@ -4,6 +4,7 @@ use super::area::Parts;
 use super::constants::{INDEPENDENT, SMALLEST_FILL};
 use super::form::flat;
 use super::moments::{self, Moments, Plane};
+use super::noise;
 use crate::math::mat3::{self, Mat3};
 
 /// Numbers of a [`Record`].
@@ -57,23 +58,15 @@ impl Record {
         }
     }
 
-    /// The noise of N x `N_x` for a variance of 1: `[N]x C [N]x^T`.
-    pub fn cross_noise(&self, noise: &Mat3) -> Mat3 {
-        let crossed = noise.map(|row| mat3::cross(self.middle, row));
-        mat3::transpose(&crossed).map(|column| mat3::cross(self.middle, column))
-    }
-
     /// `r1.(N x N_x) + r2.(N x N_y)`, which integrability makes zero.
     pub fn s(&self, rows: &Mat3) -> f64 {
         self.v.iter().zip(flat(rows)).map(|(a, b)| a * b).sum()
     }
 
-    /// The variance that noise gives to `s`.
-    pub fn variance_at(&self, noise: &Mat3, [r1, r2, _]: &Mat3) -> f64 {
-        let [xx, xy, yy] = self.variance;
-        let (a, b) = (mat3::cross(*r1, self.middle), mat3::cross(*r2, self.middle));
-        let (c, d) = (mat3::apply(noise, a), mat3::apply(noise, b));
-        xx * mat3::dot(a, c) + 2.0 * xy * mat3::dot(a, d) + yy * mat3::dot(b, d)
+    /// What its noise is linear in.
+    #[inline]
+    pub fn noise_terms(&self) -> noise::Terms {
+        noise::terms(self.middle, self.variance)
     }
 
     /// What noise adds to `radial`.
@@ -140,11 +133,10 @@ mod tests {
         let along_x = [[1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]];
         let turned = [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
         // (2 r1y)^2 of N_x alone: r2y is zero.
-        assert!((record.variance_at(&along_x, &turned) - 16.0).abs() < 1e-12);
+        let variance_at = |rows| noise::total(&noise::variance(rows, &along_x), &record.noise_terms());
+        assert!((variance_at(&turned) - 16.0).abs() < 1e-12);
         let both = [[0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
-        assert!((record.variance_at(&along_x, &both) - 4.0 * (4.0 - 2.0 + 9.0)).abs() < 1e-12);
-        let cross = record.cross_noise(&along_x);
-        assert!((cross[1][1] - 4.0).abs() < 1e-12 && cross[0][0].abs() < 1e-12);
+        assert!((variance_at(&both) - 4.0 * (4.0 - 2.0 + 9.0)).abs() < 1e-12);
         assert!((record.radial_noise(&mat3::IDENTITY) - 4.0 * 13.0).abs() < 1e-12);
     }
 }

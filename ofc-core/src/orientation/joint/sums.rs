@@ -145,7 +145,8 @@ fn collect<'r>(cells: &Cells, numbers: &'r mut [f32]) -> Option<Records<'r>> {
     let mut n = 0;
     for y in 0..height.saturating_sub(1) {
         for x in 0..width.saturating_sub(1) {
-            if let Some(record) = Record::of(&cells.two_by_two(x, y), side, cells.middle(x, y))
+            if let Some(window) = cells.two_by_two(x, y)
+                && let Some(record) = Record::of(&window, side, cells.middle(x, y))
                 && let Some(slot) = numbers.get_mut(n)
             {
                 record.store(slot);
