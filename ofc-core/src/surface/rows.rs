@@ -72,7 +72,7 @@ pub(super) fn write_in_parts<const N: usize>(
     image: &Image,
     inliers: impl Fn(&Window) -> u64 + Sync,
     many: impl Fn(&Window, u64, &mut [[f32; N]]) -> u64 + Sync,
-    value: impl Fn([f32; 3]) -> [f32; N] + Sync,
+    value: impl Fn([f32; 3]) -> [f32; N] + Sync + Copy,
     out: &mut [f32],
     row_stride: usize,
     parallel: &impl Parallel,
@@ -85,7 +85,7 @@ pub(super) fn write_in_parts<const N: usize>(
         let y = part * rows;
         if let Some(image) = image.crop([0, y], [width, rows.min(height - y)]) {
             // Long enough: it has been cut so.
-            let _ = write_windows(&image, &inliers, &many, &value, out, row_stride);
+            let _ = write_windows(&image, &inliers, &many, value, out, row_stride);
         }
     });
     Ok(())
@@ -98,7 +98,7 @@ pub(super) fn write_in_parts<const N: usize>(
 pub(super) fn write_each_in_parts<const N: usize>(
     image: &Image,
     inliers: impl Fn(&Window) -> u64 + Sync,
-    value: impl Fn([f32; 3]) -> [f32; N] + Sync,
+    value: impl Fn([f32; 3]) -> [f32; N] + Sync + Copy,
     nothing: f32,
     out: &mut [f32],
     row_stride: usize,

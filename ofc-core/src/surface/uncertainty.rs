@@ -152,7 +152,8 @@ impl Uncertainty {
         row_stride: usize,
         parallel: &impl Parallel,
     ) -> Result<(), TooShort> {
-        let angle = |color| [self.angle(color) as f32];
+        let own = *self;
+        let angle = move |color| [own.angle(color) as f32];
         rows::write_each_in_parts(image, inliers, angle, PI as f32, angles, row_stride, parallel)
     }
 }
