@@ -2380,6 +2380,7 @@ typedef struct ofc_rig_rows {
     float reciprocals[720];
     int32_t bounds[4];   ///< The first and last column and row of the contact: left, top, right, bottom.
     uint32_t contact[8]; ///< The cells of the contact in the row of cells that was last begun, a bit each.
+    uint32_t missing[8]; ///< Its cells of which less than half is usable, a bit each.
     uint32_t pixels;     ///< How many pixels the contact has.
     int32_t rows;        ///< How many rows were seen.
 } ofc_rig_rows;
@@ -2393,13 +2394,13 @@ ofc_status ofc_rig_rows_begin(ofc_rig_rows *rows);
 /// microcontrollers.
 ///
 /// A cell, as wide as one of ofc_rig_classify() and one row high, is touched where it differs from the plane by more than noise together with both
-/// beside it. Rows above and below are not looked at: borders are less smooth than those of whole frames. Pixels beyond the last whole cell of a row
-/// have the class of that cell, and are not in the area of the contact.
+/// beside it. Rows above and below are not looked at: borders are less smooth than those of whole frames. A cell of which less than half is usable,
+/// because it is saturated, not finite, masked out or without a background, is not touched. Pixels beyond the last whole cell have the class of that cell.
 /// @param model  The solved rig, read in place: the same one for all rows of a frame, its numbers are checked with the first row.
 /// @param rows  In and out: the frame so far, from ofc_rig_rows_begin().
 /// @param row  A picture of height 1: the row after the last one.
 /// @param background  The same row without a contact; NULL to take the plane that the model has, which is right where the frames that the
-///     model was made of were added without a background.
+///     model was made of were added without a background. Where a channel of it is zero, saturated or not finite, there is no usable color.
 /// @param classes  Output: width bytes, one of OFC_RELIEF_* for each pixel. NULL where they are not wanted.
 /// @param normals  Output: width (n1, n2, n3) floats: (0, 0, 1) on the plane, NaN where there is no usable color. NULL where they are not wanted.
 /// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH for a row that is not one of the model's width;
@@ -2412,7 +2413,7 @@ ofc_status ofc_rig_row(const ofc_rig_model *model, ofc_rig_rows *rows, const ofc
 /// Says what is pressed in, from the rows seen so far.
 /// @param rows  The rows.
 /// @param pixel_size  The length of a pixel on the gel, positive.
-/// @param contact  Output: area, center and bounds. Without depth nothing is known of peak and volume: they are NaN, and the place of the peak is -1, -1.
+/// @param contact  Output: area, center and bounds of the pixels of the class OFC_RELIEF_CONTACT. Without depth nothing is known of peak and volume: they are NaN, and the place of the peak is -1, -1.
 /// @return OFC_STATUS_OK; OFC_STATUS_NO_RELIEF, with nothing written, where there is no contact; an argument status.
 ofc_status ofc_rig_rows_contact(const ofc_rig_rows *rows, double pixel_size, ofc_rig_contact *contact);
 

@@ -19,6 +19,8 @@ pub struct ofc_rig_rows {
     pub bounds: [i32; 4],
     /// The cells of the contact in the row of cells that was last begun, a bit each.
     pub contact: [u32; 8],
+    /// Its cells of which less than half is usable, a bit each.
+    pub missing: [u32; 8],
     /// How many pixels the contact has.
     pub pixels: u32,
     /// How many rows were seen.
@@ -70,6 +72,7 @@ pub unsafe extern "C" fn ofc_rig_rows_begin(rows: *mut ofc_rig_rows) -> ofc_stat
         let rows = call.output(rows)?;
         (rows.sums, rows.bounds, rows.pixels, rows.rows) = ([0.0; 2], [0; 4], 0, 0);
         rows.contact.fill(0);
+        rows.missing.fill(0);
         rows.reciprocals.fill(0.0);
         Ok(OFC_STATUS_OK)
     })
@@ -79,13 +82,13 @@ pub unsafe extern "C" fn ofc_rig_rows_begin(rows: *mut ofc_rig_rows) -> ofc_stat
 /// microcontrollers.
 ///
 /// A cell, as wide as one of ofc_rig_classify() and one row high, is touched where it differs from the plane by more than noise together with both
-/// beside it. Rows above and below are not looked at: borders are less smooth than those of whole frames. Pixels beyond the last whole cell of a row
-/// have the class of that cell, and are not in the area of the contact.
+/// beside it. Rows above and below are not looked at: borders are less smooth than those of whole frames. A cell of which less than half is usable,
+/// because it is saturated, not finite, masked out or without a background, is not touched. Pixels beyond the last whole cell have the class of that cell.
 /// @param model  The solved rig, read in place: the same one for all rows of a frame, its numbers are checked with the first row.
 /// @param rows  In and out: the frame so far, from ofc_rig_rows_begin().
 /// @param row  A picture of height 1: the row after the last one.
 /// @param background  The same row without a contact; NULL to take the plane that the model has, which is right where the frames that the
-///     model was made of were added without a background.
+///     model was made of were added without a background. Where a channel of it is zero, saturated or not finite, there is no usable color.
 /// @param classes  Output: width bytes, one of OFC_RELIEF_* for each pixel. NULL where they are not wanted.
 /// @param normals  Output: width (n1, n2, n3) floats: (0, 0, 1) on the plane, NaN where there is no usable color. NULL where they are not wanted.
 /// @return OFC_STATUS_OK; OFC_STATUS_NOT_SOLVED; OFC_STATUS_ROW_MISMATCH for a row that is not one of the model's width;
@@ -119,12 +122,13 @@ pub unsafe extern "C" fn ofc_rig_row(
             sums: rows.sums,
             bounds: rows.bounds.map(dimension),
             contact: rows.contact,
+            missing: rows.missing,
         };
         let reciprocals = rows.reciprocals.as_chunks_mut().0.first_chunk_mut();
         let mut frame =
             Rows { reciprocals: reciprocals.ok_or(OFC_STATUS_INVALID_PARAMETER)?, seen: &mut seen };
         rig::row(&model, &mut frame, &row, background.as_ref(), &mut Wanted { classes, normals })?;
-        rows.contact = seen.contact;
+        (rows.contact, rows.missing) = (seen.contact, seen.missing);
         (rows.rows, rows.pixels, rows.sums) = (seen.rows.to_c(), seen.pixels, seen.sums);
         rows.bounds = seen.bounds.map(|bound| bound.to_c());
         Ok(OFC_STATUS_OK)
@@ -134,7 +138,7 @@ pub unsafe extern "C" fn ofc_rig_row(
 /// Says what is pressed in, from the rows seen so far.
 /// @param rows  The rows.
 /// @param pixel_size  The length of a pixel on the gel, positive.
-/// @param contact  Output: area, center and bounds. Without depth nothing is known of peak and volume: they are NaN, and the place of the peak is -1, -1.
+/// @param contact  Output: area, center and bounds of the pixels of the class OFC_RELIEF_CONTACT. Without depth nothing is known of peak and volume: they are NaN, and the place of the peak is -1, -1.
 /// @return OFC_STATUS_OK; OFC_STATUS_NO_RELIEF, with nothing written, where there is no contact; an argument status.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ofc_rig_rows_contact(

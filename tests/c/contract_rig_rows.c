@@ -1,4 +1,4 @@
-/* A frame that is seen row by row: its normals and its contact, a background for some rows, and bad arguments. */
+/* A frame that is seen row by row: its normals and its contact, pixels that say nothing, and bad arguments. */
 #include "ball.h"
 
 static struct {
@@ -125,10 +125,11 @@ static void rows_are_seen(void **state)
     assert_int_equal(looked(&row), OFC_STATUS_OK);
 }
 
-/* Frame and plane at twice their size, so that cells have two columns and two rows and some pixels are beyond the last whole cell: as floats. */
+/* Frame and plane at twice their size, so that cells have two columns and two rows and some pixels are beyond the last whole cell: as floats, which may
+   be no numbers, and a mask. */
 enum { WIDE = 2 * ACROSS + 3, TALL = 2 * DOWN + 1 };
 static float colors[TALL][WIDE][3], untouched[TALL][WIDE][3];
-static uint8_t classes[TALL][WIDE];
+static uint8_t mask[TALL][WIDE], classes[TALL][WIDE];
 static float normals[TALL][WIDE][3];
 
 static void reset(void)
@@ -140,12 +141,22 @@ static void reset(void)
                 colors[y][x][c] = frame[from_y][from_x][c];
                 untouched[y][x][c] = plane[from_y][from_x][c];
             }
+    memset(mask, 1, sizeof mask);
+}
+
+/* Sets the colors of a patch. */
+static void patch(float picture[TALL][WIDE][3], int left, int top, int width, int height, float color)
+{
+    for (int y = top; y < top + height; y++)
+        for (int x = left; x < left + width; x++)
+            for (int c = 0; c < 3; c++)
+                picture[y][x][c] = color;
 }
 
 static ofc_image whole_of(float picture[TALL][WIDE][3], int width)
 {
     const ofc_image image = {.pixels = picture, .width = width, .height = TALL, .row_stride_bytes = sizeof picture[0],
-                             .format = OFC_PIXEL_RGB32F};
+                             .format = OFC_PIXEL_RGB32F, .mask = picture == colors ? mask[0] : NULL, .mask_stride_bytes = WIDE};
     return image;
 }
 
@@ -153,6 +164,7 @@ static ofc_image float_row_of(float picture[TALL][WIDE][3], int y, int width)
 {
     ofc_image row = whole_of(picture, width);
     row.pixels = picture[y];
+    row.mask = row.mask == NULL ? NULL : mask[y];
     row.height = 1;
     return row;
 }
@@ -212,6 +224,56 @@ static int count_of(int class, int left, int top, int width, int height)
     return count;
 }
 
+static void what_says_nothing_is_no_contact(void **state)
+{
+    (void)state;
+    for (int background = NO_BACKGROUND; background <= BACKGROUND; background++) {
+        reset();
+        const ofc_rig_contact clean = contact_of(WIDE, background);
+        assert_int_equal(count_of(OFC_RELIEF_NONE, 0, 0, WIDE, TALL), 0);
+        /* Far from the ball: saturated, no number, infinite; in the mask or not. */
+        const float levels[] = {255, NAN, INFINITY};
+        for (int i = 0; i < 4; i++) {
+            reset();
+            patch(colors, 4, 4, 24, 32, levels[i % 3]);
+            if (i == 3)
+                for (int y = 4; y < 36; y++)
+                    memset(&mask[y][4], 0, 24);
+            const ofc_rig_contact contact = contact_of(WIDE, background);
+            assert_memory_equal(&contact.center, &clean.center, sizeof clean.center);
+            assert_true(contact.area == clean.area);
+            assert_int_equal(count_of(OFC_RELIEF_NONE, 4, 4, 24, 32), 24 * 32);
+            assert_int_equal(count_of(OFC_RELIEF_NONE, 0, 0, WIDE, TALL), 24 * 32);
+        }
+        /* Of the last cells half is saturated. */
+        reset();
+        patch(colors, 4, 4, 25, 32, 255);
+        assert_true(contact_of(WIDE, background).area == clean.area);
+        /* A marker is dark, no contact, and so is what is near it. */
+        reset();
+        patch(colors, 4, 4, 24, 32, 10);
+        assert_true(contact_of(WIDE, background).area == clean.area);
+        /* On the ball: highlights, and a hole in the mask. */
+        reset();
+        patch(colors, 121, 112, 1, 8, 255);
+        patch(colors, 190, 112, 1, 8, NAN);
+        for (int y = 130; y < 134; y++)
+            memset(&mask[y][116], 0, 8);
+        assert_true(contact_of(WIDE, background).area == clean.area - 48);
+    }
+    /* A background that is not known. */
+    const float levels[] = {NAN, INFINITY, 0};
+    reset();
+    const ofc_rig_contact clean = contact_of(WIDE, BACKGROUND);
+    for (int i = 0; i < 3; i++) {
+        reset();
+        patch(untouched, 4, 4, 24, 32, levels[i]);
+        const ofc_rig_contact contact = contact_of(WIDE, BACKGROUND);
+        assert_true(contact.area == clean.area);
+        assert_int_equal(count_of(OFC_RELIEF_NONE, 0, 0, WIDE, TALL), 24 * 32);
+    }
+}
+
 static void a_background_may_come_and_go(void **state)
 {
     (void)state;
@@ -221,11 +283,22 @@ static void a_background_may_come_and_go(void **state)
     assert_int_equal(count_of(OFC_RELIEF_NONE, 0, 0, WIDE, TALL), 0);
 }
 
+/* Pixels beyond the last whole cell are counted too. */
+static void widths_are_no_multiples_of_cells(void **state)
+{
+    (void)state;
+    reset();
+    for (int width = 201; width > 199; width--)
+        assert_true(contact_of(width, BACKGROUND).bounds[2] == width - 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rows_are_seen),
+        cmocka_unit_test(what_says_nothing_is_no_contact),
         cmocka_unit_test(a_background_may_come_and_go),
+        cmocka_unit_test(widths_are_no_multiples_of_cells),
     };
     return cmocka_run_group_tests(tests, prepare, NULL);
 }

@@ -11,7 +11,6 @@ use crate::orientation::relief::{
 };
 use crate::picture::{Image, WINDOW, Window, first_bits};
 use core::fmt;
-use core::ops::Range;
 use libm::sqrtf;
 
 /// One over the color of the plane, by channel and cell of a row.
@@ -49,6 +48,8 @@ pub struct Seen {
     pub bounds: [usize; 4],
     /// The cells of the contact in the row of cells that was last begun, a bit each.
     pub contact: BitRow,
+    /// Its cells of which less than half is usable, a bit each.
+    pub missing: BitRow,
 }
 
 /// A frame that is seen row by row.
@@ -133,7 +134,8 @@ pub fn row(
     if y >= model.height {
         return Err(RowError::TooMany);
     }
-    let job = Job { model, grid, image, background, window: &mut Window::new(), plane: None };
+    let saturation = model.saturation.unwrap_or(image.sample().saturation());
+    let job = Job { model, grid, image, background, saturation, window: &mut Window::new(), plane: None };
     if background.is_some() {
         look_with_background(job, frame, wanted);
     } else {
@@ -152,36 +154,51 @@ fn look(mut job: Job, frame: &mut Rows, wanted: &mut Wanted) {
     let (y, grid) = (frame.seen.rows, job.grid);
     // Rows beyond the last whole cells are like them.
     if y.checked_rem(grid.side) == Some(0) && y < grid.height * grid.side {
-        // A row with a background does not use them, but the next one may come without.
+        // Where there is a background they are not used in this row; the next one may come without.
         job.set_plane(frame.reciprocals, y);
-        frame.seen.contact = wider(&narrower(&job.touched(frame.reciprocals)));
+        job.begin(frame);
     }
-    frame.seen.add(&grid);
-    job.write(frame.reciprocals, y, &frame.seen.contact, wanted);
+    let run = job.write(frame, y, wanted);
+    frame.seen.add(&run);
+}
+
+/// The pixels of the contact in a row.
+#[derive(Default)]
+struct Run {
+    pixels: u32,
+    /// The sum of their columns.
+    columns: u64,
+    first: usize,
+    last: usize,
+}
+
+impl Run {
+    /// Adds a pixel to the right of the last one.
+    fn add(&mut self, x: usize) {
+        if self.pixels == 0 {
+            self.first = x;
+        }
+        self.last = x;
+        self.pixels += 1;
+        self.columns += x as u64;
+    }
 }
 
 impl Seen {
     /// Adds a row.
-    fn add(&mut self, grid: &Grid) {
+    fn add(&mut self, run: &Run) {
         let y = self.rows;
         self.rows += 1;
-        for (word, first) in self.contact.iter().zip((0..).step_by(32)) {
-            let mut bits = *word;
-            while bits != 0 {
-                let cell = first + bits.trailing_zeros() as usize;
-                bits &= bits - 1;
-                let (first, last) = (cell * grid.side, (cell + 1) * grid.side - 1);
-                if self.pixels == 0 {
-                    self.bounds = [first, y, last, y];
-                }
-                let [left, top, right, _] = self.bounds;
-                self.bounds = [left.min(first), top, right.max(last), y];
-                self.pixels = self.pixels.saturating_add(grid.side as u32);
-                let [x_sum, y_sum] = self.sums;
-                self.sums =
-                    [x_sum + (grid.side * (first + last)) as f64 / 2.0, y_sum + (grid.side * y) as f64];
-            }
+        if run.pixels == 0 {
+            return;
         }
+        if self.pixels == 0 {
+            self.bounds = [run.first, y, run.last, y];
+        }
+        let ([left, top, right, _], [x_sum, y_sum]) = (self.bounds, self.sums);
+        self.bounds = [left.min(run.first), top, right.max(run.last), y];
+        self.pixels = self.pixels.saturating_add(run.pixels);
+        self.sums = [x_sum + run.columns as f64, y_sum + f64::from(run.pixels) * y as f64];
     }
 }
 
@@ -190,6 +207,8 @@ struct Job<'j> {
     grid: Grid,
     image: &'j Image<'j>,
     background: Option<&'j Image<'j>>,
+    /// A pixel is saturated if any of its channels is at or above this.
+    saturation: f32,
     window: &'j mut Window,
     plane: Option<&'j mut Window>,
 }
@@ -223,9 +242,10 @@ impl Job<'_> {
         }
     }
 
-    /// The cells of this row of pixels that differ from the plane, but for dark spots and what is near them.
-    fn touched(&mut self, reciprocals: &Reciprocals) -> BitRow {
-        let (mut bits, mut spots) = ([0; 8], [0; 8]);
+    /// Begins a row of cells with its first row of pixels: which cells differ from the plane, but for dark spots and what is near them, and which
+    /// are missing.
+    fn begin(&mut self, frame: &mut Rows) {
+        let (mut bits, mut spots, mut missing) = ([0; 8], [0; 8], [0; 8]);
         // Of a cell of one row the noise is that of fewer pixels.
         let rows = sqrtf(self.grid.side as f32);
         let weights =
@@ -234,15 +254,25 @@ impl Job<'_> {
         while x < width {
             let strip = Strip::at(&self.grid, x, 0);
             self.read(x);
-            let is_whole = first_bits(strip.len) & !self.window.masked == 0;
             let firsts = (0..strip.len).step_by(strip.side.get());
             for (cell, first) in (strip.first..).zip(firsts) {
                 let columns = first..strip.len.min(first + strip.side.get());
-                let is_plane = self.square(columns, here(reciprocals, cell), weights) <= 1.0;
-                if is_plane || !(is_whole || self.window.masked >> first & 1 == 1) {
+                let (all, by) = (columns.len(), here(frame.reciprocals, cell));
+                if self.square(columns.clone(), by, weights) <= 1.0 {
                     continue;
                 }
-                let is_spot = is_dark(self.relative(first, here(reciprocals, cell)));
+                // Few differ: which of their pixels say so is looked at for these alone.
+                let usable = columns.filter(|&i| self.is_usable(i, false));
+                let count = usable.clone().count();
+                if 2 * count < all {
+                    set(&mut missing, cell);
+                    continue;
+                }
+                // The variance of the mean of fewer pixels is more.
+                if count < all && self.square(usable.clone(), by, weights) * count as f32 <= all as f32 {
+                    continue;
+                }
+                let is_spot = usable.clone().any(|i| is_dark(self.relative(i, by)));
                 set(if is_spot { &mut spots } else { &mut bits }, cell);
             }
             x += strip.len;
@@ -251,15 +281,34 @@ impl Job<'_> {
             let near = wider(&wider(&spots));
             bits.iter_mut().zip(near).for_each(|(word, near)| *word &= !near);
         }
-        bits
+        frame.seen.contact = wider(&narrower(&bits));
+        frame.seen.missing = missing;
     }
 
-    /// The square of a cell's distance from the plane, in units of where it begins to be touched.
-    fn square(&self, columns: Range<usize>, by: [f32; 3], weights: [f32; 3]) -> f32 {
-        let share = 1.0 / columns.len() as f32;
-        let [r, g, b] = sum(self.window, columns.clone());
+    /// Whether the color of pixel `i` of what was read last is known, and that of the background; all are in the mask of what is whole.
+    #[expect(clippy::inline_always, reason = "asked of each pixel near a contact")]
+    #[inline(always)]
+    fn is_usable(&self, i: usize, is_whole: bool) -> bool {
+        (is_whole || self.window.masked >> i & 1 == 1)
+            && is_below(self.window.pixel(i), self.saturation)
+            && (self.plane.is_none() || self.is_background_known(i))
+    }
+
+    #[inline(never)]
+    fn is_background_known(&self, i: usize) -> bool {
+        let (Some(plane), Some(background)) = (&self.plane, self.background) else { return false };
+        let color = plane.pixel(i);
+        color.iter().all(|&value| value > 0.0) && is_below(color, background.sample().saturation())
+    }
+
+    /// The square of the distance of a cell's pixels from the plane, in units of where it begins to be touched.
+    #[expect(clippy::inline_always, reason = "asked of each cell")]
+    #[inline(always)]
+    fn square(&self, pixels: impl Iterator<Item = usize> + Clone, by: [f32; 3], weights: [f32; 3]) -> f32 {
+        let share = 1.0 / pixels.clone().count() as f32;
+        let [r, g, b] = sum(self.window, pixels.clone());
         let [by_r, by_g, by_b] = match &self.plane {
-            Some(plane) => sum(plane, columns).map(|sum| if sum > 0.0 { 1.0 / (share * sum) } else { 0.0 }),
+            Some(plane) => sum(plane, pixels).map(|sum| if sum > 0.0 { 1.0 / (share * sum) } else { 0.0 }),
             None => by,
         };
         let [weight_r, weight_g, weight_b] = weights;
@@ -279,25 +328,26 @@ impl Job<'_> {
         [r * by_r - 1.0, g * by_g - 1.0, b * by_b - 1.0]
     }
 
-    /// Writes classes and normals of a row.
-    fn write(&mut self, reciprocals: &Reciprocals, y: usize, contact: &BitRow, wanted: &mut Wanted) {
+    /// Writes classes and normals of a row. What it has of the contact.
+    fn write(&mut self, frame: &Rows, y: usize, wanted: &mut Wanted) -> Run {
+        let (Seen { contact, missing, .. }, mut run) = (&*frame.seen, Run::default());
         let is_masked = (0..self.model.width).step_by(WINDOW).any(|x| {
             let len = WINDOW.min(self.model.width - x);
             self.image.masked(x, 0) != first_bits(len)
         });
-        if !is_masked && contact.iter().all(|word| *word == 0) {
-            return wanted.write_plane(0, self.model.width);
+        if !is_masked && contact.iter().chain(missing).all(|word| *word == 0) {
+            wanted.write_plane(0, self.model.width);
+            return run;
         }
         let near = (0..SKIRT).fold(*contact, |near, _| wider(&near));
         let down = (2 * y + 1) as f64 / (self.grid.height * self.grid.side) as f64 - 1.0;
         let row = Row::of(self.model.w, self.model.order, down);
-        let saturation = self.model.saturation.unwrap_or(self.image.sample().saturation());
         let mut x = 0;
         while x < self.model.width {
             let strip = Strip::of_row(&self.grid, x, self.model.width);
             let is_whole = first_bits(strip.len) & !self.image.masked(x, 0) == 0;
             let cells = strip.first..strip.first + strip.cells();
-            if is_whole && !cells.clone().any(|cell| is_set(&near, cell)) {
+            if is_whole && !cells.clone().any(|cell| is_set(&near, cell) || is_set(missing, cell)) {
                 wanted.write_plane(x, strip.len);
                 x += strip.len;
                 continue;
@@ -312,22 +362,24 @@ impl Job<'_> {
                     PixelClass::Plane
                 };
                 let end = strip.len.min(first + strip.side.get());
-                if class == PixelClass::Plane && is_whole {
+                if class == PixelClass::Plane && is_whole && !is_set(missing, cell) {
                     wanted.write_plane(x + first, end - first);
                     continue;
                 }
                 let middle = self.middle(cell);
-                let (w, by) = (row.at(middle), here(reciprocals, cell));
+                let (w, by) = (row.at(middle), here(frame.reciprocals, cell));
                 for i in first..end {
-                    let normal = if !is_whole && self.window.masked >> i & 1 == 0 {
+                    let normal = if !self.is_usable(i, is_whole) {
                         None
                     } else if class == PixelClass::Plane {
                         Some([0.0, 0.0, 1.0])
                     } else {
-                        let is_usable = is_below(self.window.pixel(i), saturation);
                         let delta = self.relative(i, by);
-                        if is_usable && !is_dark(delta) { unit(row.of_pixel(middle, w, delta)) } else { None }
+                        if is_dark(delta) { None } else { unit(row.of_pixel(middle, w, delta)) }
                     };
+                    if normal.is_some() && class == PixelClass::Contact {
+                        run.add(x + i);
+                    }
                     match normal {
                         Some(normal) => wanted.write(x + i, class, normal),
                         None => wanted.write(x + i, PixelClass::None, [f32::NAN; 3]),
@@ -336,13 +388,14 @@ impl Job<'_> {
             }
             x += strip.len;
         }
+        run
     }
 }
 
-/// The sum of the colors of these columns.
-fn sum(window: &Window, columns: Range<usize>) -> [f32; 3] {
+/// The sum of the colors of these pixels.
+fn sum(window: &Window, pixels: impl Iterator<Item = usize>) -> [f32; 3] {
     let mut sums = [0.0; 3];
-    for i in columns {
+    for i in pixels {
         let ([red, green, blue], [r, g, b]) = (sums, window.pixel(i));
         sums = [red + r, green + g, blue + b];
     }
