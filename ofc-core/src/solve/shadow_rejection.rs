@@ -91,7 +91,8 @@ impl Solution {
         let about = (all.count as u64 * left as u64 / SAMPLE as u64) as usize;
         let lit = lmeds::Problem { usable, count: about, ..*all };
         let z = fit?.z();
-        let bracket = lmeds::Bracket::of_pixels(&colors, usable, &z, workspace);
+        // Without one, the count would have to be exact.
+        let bracket = Some(lmeds::Bracket::of_pixels(&colors, usable, &z, workspace)?);
         let scaled = z.map(|c| c / (lit.scale * lit.scale));
         let mut fit = None;
         lit.evaluate_within::<true>(Some(scaled), bracket, workspace, &mut fit).ok()?;

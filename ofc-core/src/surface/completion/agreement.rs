@@ -10,9 +10,10 @@ const NEAR: f32 = 2.5;
 const BESIDE: f32 = 7.5;
 /// Noise is at least this in a length.
 const LEAST_NOISE: f32 = 0.01;
-/// At least so many times as many are 1 as by chance where F is that of the picture: 8 and more on rendered scenes and photographs,
-/// and hardly any more where it is that of another one, or where channels are exchanged.
-const CONCENTRATION: f32 = 4.0;
+/// At least so many times as many are 1 as by chance where F is that of the picture. Of 298 rendered pictures of which a third and more is
+/// lit none had less than 3.5, and half of them 13; of 590 pairs with the F of another one, or with channels exchanged in turn, none more
+/// than 2.7.
+const CONCENTRATION: f32 = 3.0;
 
 /// `root` is such that a raw normal has the noise `root` times that of the color.
 pub(super) fn holds(image: &Image, usable: Usable, f_inverse: &Matrix, root: &Matrix) -> bool {

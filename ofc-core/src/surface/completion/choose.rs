@@ -68,18 +68,17 @@ struct Scale {
 }
 
 const WHOLE: Scale = Scale { smoothing: 2, radius: 3 };
-const HALF: Scale = Scale { smoothing: 1, radius: 1 };
-const QUARTER: Scale = Scale { smoothing: 1, radius: 1 };
+const COARSE: Scale = Scale { smoothing: 1, radius: 1 };
 
 /// Leaves the chosen normals in the state, the surface that they make, and in its ratios how clear each choice between images was.
 ///
 /// From the coarse to the fine: the first rounds are made at a quarter of the resolution, the next ones at half of it, as far as the
 /// picture is large enough.
 pub(super) fn choose(state: &mut State, known: &Known, rim: Option<f32>) -> Result<DepthResult, DepthError> {
-    let coarse = half::surface(state, |half| {
-        half::surface(half, |quarter| first(quarter, known, rim, QUARTER))
-            .unwrap_or_else(|| first(half, known, rim, HALF))?;
-        rounds(half, known, HALF)
+    let coarse = half::surface(state, |coarser| {
+        half::surface(coarser, |coarsest| first(coarsest, known, rim, COARSE))
+            .unwrap_or_else(|| first(coarser, known, rim, COARSE))?;
+        rounds(coarser, known, COARSE)
     });
     coarse.unwrap_or_else(|| {
         first(state, known, rim, WHOLE)?;

@@ -1,7 +1,7 @@
-//! The first surface, at half the resolution, where it takes a quarter of the time.
+//! The surface of the first rounds, at half the resolution, where it takes a quarter of the time.
 //!
-//! All of it lies in the integrator's memory, but for the classes: they are bytes, of which only the caller has any, so his wait
-//! meanwhile as integers.
+//! All of it lies in the integrator's memory, but for the classes: they are bytes, of which only the caller has any, so those of the
+//! picture wait meanwhile as integers.
 
 use super::map::{Map, Vectors, row_of, row_of_mut};
 use super::state::State;
