@@ -377,8 +377,9 @@ const char *ofc_status_message(ofc_status status);
 #define OFC_STATUS_UNKNOWN_FORMAT (-30)      ///< A pixel format is none of OFC_PIXEL_*, or not one that the call takes.
 #define OFC_STATUS_INVALID_PARAMETER (-31)   ///< A parameter is out of its range, or an input number is not finite.
 #define OFC_STATUS_RESERVED_NOT_ZERO (-32)   ///< A reserved field is not zero: initialize the whole struct.
-#define OFC_STATUS_NOT_SOLVED (-33)    ///< The solution holds no F: the call that made it did not return OFC_STATUS_OK.
-#define OFC_STATUS_NO_COVARIANCE (-34) ///< The direct method, which found the solution, knows no uncertainty.
+/// The solution holds no F, as the call that made it did not return OFC_STATUS_OK, or its F does not fit the picture.
+#define OFC_STATUS_NOT_SOLVED (-33)
+#define OFC_STATUS_NO_COVARIANCE (-34)  ///< The direct method, which found the solution, knows no uncertainty.
 #define OFC_STATUS_TOO_FEW_PIXELS (-40) ///< There are fewer usable pixels than a fit needs.
 #define OFC_STATUS_DARK (-41)           ///< There are too few usable pixels: most are black.
 #define OFC_STATUS_SATURATED (-42)      ///< There are too few usable pixels: most are saturated.

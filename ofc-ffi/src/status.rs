@@ -74,7 +74,7 @@ pub const OFC_STATUS_UNKNOWN_FORMAT: i32 = -30;
 pub const OFC_STATUS_INVALID_PARAMETER: i32 = -31;
 /// A reserved field is not zero: initialize the whole struct.
 pub const OFC_STATUS_RESERVED_NOT_ZERO: i32 = -32;
-/// The solution holds no F: the call that made it did not return OFC_STATUS_OK.
+/// The solution holds no F, as the call that made it did not return OFC_STATUS_OK, or its F does not fit the picture.
 pub const OFC_STATUS_NOT_SOLVED: i32 = -33;
 /// The direct method, which found the solution, knows no uncertainty.
 pub const OFC_STATUS_NO_COVARIANCE: i32 = -34;
@@ -131,7 +131,7 @@ fn message(status: ofc_status) -> &'static CStr {
         OFC_STATUS_UNKNOWN_FORMAT => c"unknown pixel format",
         OFC_STATUS_INVALID_PARAMETER => c"a parameter is out of its range or not finite: see its field in ofc.h",
         OFC_STATUS_RESERVED_NOT_ZERO => c"a reserved field is not zero",
-        OFC_STATUS_NOT_SOLVED => c"the solution holds no F",
+        OFC_STATUS_NOT_SOLVED => c"the solution holds no F that fits the picture",
         OFC_STATUS_NO_COVARIANCE => c"the solution does not know how sure its orientation is: it was found by tilts alone",
         OFC_STATUS_TOO_FEW_PIXELS => c"too few usable pixels",
         OFC_STATUS_DARK => c"too few usable pixels: most are black",
