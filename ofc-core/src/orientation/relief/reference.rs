@@ -105,10 +105,10 @@ pub(super) fn fit(
     scratch: &mut [f32],
 ) -> Option<Polynomial> {
     let is_known = |cell: &usize| states.get(*cell) == Some(&(Cell::Known as u32));
-    let step = grid.step(MOST_CELLS).get().max(1);
+    let step = grid.step(MOST_CELLS);
     let cells = || {
-        let rows = (0..grid.height).step_by(step);
-        let all = rows.flat_map(|y| (0..grid.width).step_by(step).map(move |x| y * grid.width + x));
+        let rows = (0..grid.height).step_by(step.get());
+        let all = rows.flat_map(|y| (0..grid.width).step_by(step.get()).map(move |x| y * grid.width + x));
         all.filter(is_known)
     };
     let color = |cell: usize| {
