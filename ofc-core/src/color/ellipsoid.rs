@@ -95,8 +95,12 @@ const SMALLEST_EIGENVALUE_RATIO: f64 = 1e-14;
 pub fn decompose(z: &Coefficients) -> Result<Ellipsoid, NotPositiveDefinite> {
     let c = matrix(z);
     let eigen = mat3::symmetric_eigen(&c);
-    let [largest, _, smallest] = eigen.values;
-    let positive = smallest > largest * SMALLEST_EIGENVALUE_RATIO && smallest > 0.0 && largest.is_finite();
+    let [largest, middle, smallest] = eigen.values;
+    // Numbers of extreme range may have no eigenvalues: the middle one is a number where it is no less than another.
+    let positive = smallest > largest * SMALLEST_EIGENVALUE_RATIO
+        && smallest > 0.0
+        && largest.is_finite()
+        && middle >= smallest;
     if !positive {
         return Err(NotPositiveDefinite { eigenvalues: eigen.values });
     }
