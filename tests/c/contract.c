@@ -49,6 +49,16 @@ int prepare_stages(void **state)
     return fitted == OFC_STATUS_OK && solved == OFC_STATUS_OK ? 0 : -1;
 }
 
+int prepare_jointly(void **state, ofc_solution *solution)
+{
+    const int failed = prepare_stages(state);
+    const ofc_image image = ball_image();
+    ofc_solve_params params = stages.params;
+    params.orientation_method = OFC_ORIENTATION_JOINT;
+    params.tilt_estimator = OFC_TILT_PENTLAND;
+    return failed || ofc_solve(&image, &params, workspace, sizeof workspace, NULL, solution) != OFC_STATUS_OK;
+}
+
 int is_untouched(const void *bytes, size_t count)
 {
     const uint8_t *byte = bytes;

@@ -29,6 +29,8 @@ struct stages {
 extern struct stages stages;
 /* Group setup for cmocka: renders, fits and solves the ball. */
 int prepare_stages(void **state);
+/* The same, and by the joint method, which knows how sure it is, with Pentland's tilts. */
+int prepare_jointly(void **state, ofc_solution *solution);
 
 extern uint64_t workspace[OFC_SOLVE_WORKSPACE_SIZE(WIDTH, HEIGHT) / sizeof(uint64_t)];
 

@@ -29,17 +29,13 @@ static ofc_image large_image(void)
 
 static int prepare(void **state)
 {
-    const int failed = prepare_stages(state);
-    const ofc_image image = ball_image();
-    ofc_solve_params params = stages.params;
-    params.orientation_method = OFC_ORIENTATION_JOINT;
-    params.tilt_estimator = OFC_TILT_PENTLAND;
+    const int failed = prepare_jointly(state, &solution);
     for (int y = 0; y < TALL; y++)
         for (int x = 0; x < WIDE; x++) {
             memcpy(large[y][x], ball[y / 6][x / 6], 3);
             mask[y][x] = (x * y) % 17 != 3;
         }
-    return failed || ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &solution) != OFC_STATUS_OK;
+    return failed;
 }
 
 /* Computes all that there is into `found`. */

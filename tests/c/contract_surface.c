@@ -19,13 +19,7 @@ static const size_t rows[4] = {sizeof out.normals[0], sizeof out.angles[0], size
 
 static int prepare(void **state)
 {
-    const int failed = prepare_stages(state);
-    const ofc_image image = ball_image();
-    ofc_solve_params solve = stages.params;
-    solve.orientation_method = OFC_ORIENTATION_JOINT;
-    solve.tilt_estimator = OFC_TILT_PENTLAND;
-    return failed || ofc_solve(&image, &solve, workspace, sizeof workspace, NULL, &solution) != OFC_STATUS_OK ||
-           ofc_surface_params_default(&params) != OFC_STATUS_OK;
+    return prepare_jointly(state, &solution) || ofc_surface_params_default(&params) != OFC_STATUS_OK;
 }
 
 #define OUTPUTS out.normals[0], rows[0], out.angles[0], rows[1], out.depths[0], rows[2], out.classes[0], rows[3], &out.result

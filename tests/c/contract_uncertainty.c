@@ -13,13 +13,7 @@ static ofc_solution solution;
 
 static int prepare(void **state)
 {
-    const int failed = prepare_stages(state);
-    const ofc_image image = ball_image();
-    ofc_solve_params params = stages.params;
-    params.orientation_method = OFC_ORIENTATION_JOINT;
-    params.tilt_estimator = OFC_TILT_PENTLAND;
-    return failed || ofc_solve(&image, &params, workspace, sizeof workspace, NULL, &solution) != OFC_STATUS_OK ||
-           solution.confidence.evidence == OFC_EVIDENCE_TILTS_ALONE;
+    return prepare_jointly(state, &solution) || solution.confidence.evidence == OFC_EVIDENCE_TILTS_ALONE;
 }
 
 static const size_t row = WIDTH * sizeof(float);

@@ -6,7 +6,7 @@ use super::params::Method;
 use super::problem::Problem;
 use super::rejection::Rejection;
 use super::result::{Fit, FitError};
-use super::reweighted::{Refit, add_covariance, deviations};
+use super::reweighted::{Refit, deviations, put_covariance};
 use crate::color::ellipsoid::{Coefficients, quadratic_form};
 use crate::color::inliers::Inliers;
 use crate::color::regression::Moments;
@@ -50,7 +50,7 @@ impl<P: Pixels> Problem<'_, P> {
         let inliers = self.inliers(rejection);
         self.reweighted(rejection, &inliers, moments, out).ok_or_else(|| self.rank_deficient())?;
         if let (true, Some(fit)) = (ERRORS, out) {
-            add_covariance(moments, self.scale, fit);
+            put_covariance(moments, self.scale, fit);
             let noise = self.pixels.of_part(|part| noise(part, &inliers, &fit.z(), self.scale, workspace));
             fit.pixel_noise = fit.pixel_noise.max(noise);
         }

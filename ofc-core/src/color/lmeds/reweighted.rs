@@ -84,7 +84,7 @@ pub(super) fn deviations(moments: &Moments, scale: f64) -> [f64; 3] {
 /// Puts the expected squares and products of the errors of a fit made of these sums of colors times `scale` into it. Its inliers are
 /// those of its robust form, which pulls it: as much as the two differ may be left of that form's error.
 #[inline(never)]
-pub(super) fn add_covariance(moments: &Moments, scale: f64, fit: &mut Fit) {
+pub(super) fn put_covariance(moments: &Moments, scale: f64, fit: &mut Fit) {
     let Some(solved) = moments.solve() else {
         fit.covariance = [0.0; 21];
         return;
